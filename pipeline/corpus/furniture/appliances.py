@@ -23,7 +23,7 @@ from pipeline.corpus.furniture.finishes import (
 )
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
 from pipeline.corpus.furniture.shape import Mover, Piece, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import around, box, circle, revolve, ring, shell, slab, standing, strips
+from pipeline.corpus.furniture.solids import Interval, around, box, circle, revolve, ring, shell, slab, standing, strips
 
 FRONTS = (ENAMEL, STEEL, GRAPHITE)
 
@@ -149,7 +149,7 @@ def dishwasher(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     return Shape(base, tuple(movers))
 
 
-def _rack(name: str, x: tuple[float, float], y: tuple[float, float], z: float, high: float, door: str) -> Mover:
+def _rack(name: str, x: Interval, y: Interval, z: float, high: float, door: str) -> Mover:
     """Return a basket of wire that is drawn out through the open door."""
     wires = [box((x[0], x[1]), (a, a + 0.008), (z, z + 0.008)) for a in np.linspace(y[0], y[1] - 0.008, 8).tolist()]
     wires += [box((a, a + 0.008), (y[0] + 0.009, y[1] - 0.009), (z + 0.008, z + 0.014)) for a in (x[0], (x[0] + x[1]) / 2, x[1] - 0.008)]
@@ -271,7 +271,7 @@ def _top_loader(size: Size, outside: Finish) -> Shape:
     return Shape(base, tuple(movers))
 
 
-def _cabinet(x: tuple[float, float], y: tuple[float, float], h: float, t: float, finish: Finish) -> tuple[Piece, ...]:
+def _cabinet(x: Interval, y: Interval, h: float, t: float, finish: Finish) -> tuple[Piece, ...]:
     """Return the housing without its front: sides, top, bottom, back and four feet."""
     parts = pieces("top", box(x, y, (h - 0.03, h), 0.004), finish)
     parts += pieces(
@@ -287,7 +287,7 @@ def _cabinet(x: tuple[float, float], y: tuple[float, float], h: float, t: float,
     return parts + pieces("feet", feet, PLASTIC)
 
 
-def _on_square(angle: float, x: tuple[float, float], z: tuple[float, float], zc: float) -> tuple[float, float]:
+def _on_square(angle: float, x: Interval, z: Interval, zc: float) -> tuple[float, float]:
     """Return where a ray from (0, zc) leaves the rectangle, snapped to its corners at the diagonals of 45 degrees."""
     c, s = math.cos(angle), math.sin(angle)
     if abs(abs(c) - abs(s)) < 1e-9:
@@ -310,16 +310,13 @@ def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
     return Mover("door", parts, "revolute", (0, 0, -1), (-r, face - 0.035, zc), math.radians(100), "hinge_door", "door")
 
 
-def _detergent(x: tuple[float, float], z: tuple[float, float], face: float, t: float, finish: Finish) -> Mover:
+def _detergent(x: Interval, z: Interval, face: float, t: float, finish: Finish) -> Mover:
     """Return the detergent drawer: a small box behind its front, with a grip."""
     rect = Rect(x, z, face)
     solids = tray((x[0] + 0.006, x[1] - 0.006), (face + t, face + 0.2), (z[0] + 0.012, z[1] - 0.012), 0.008)
     parts = pieces("front", box(x, (face, face + t), z, 0.003), finish) + pieces("drawer_box", solids, PLASTIC_WHITE)
     middle = (x[0] + x[1]) / 2
     parts += pieces(
-        "handle",
-        box(around(0.045, middle), (face - 0.012, face), (z[1] - 0.012, z[1] - 0.004), 0.001),
-        PLASTIC,
-        "line_fixed_handle",
+        "handle", box(around(0.045, middle), (face - 0.012, face), (z[1] - 0.012, z[1] - 0.004), 0.001), PLASTIC, "line_fixed_handle"
     )
     return Mover("detergent", parts, "prismatic", (0, -1, 0), (middle, rect.y, (z[0] + z[1]) / 2), 0.15, "slider_drawer", "drawer")

@@ -12,6 +12,7 @@ from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, ST
 from pipeline.corpus.furniture.fronts import lid, top_button
 from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, Size, pieces, staves
 from pipeline.corpus.furniture.solids import (
+    Interval,
     Solid,
     around,
     box,
@@ -28,7 +29,7 @@ from pipeline.corpus.furniture.solids import (
 )
 
 
-def _oval(rx: float, y: tuple[float, float], z: float) -> NDArray[np.float64]:
+def _oval(rx: float, y: Interval, z: float) -> NDArray[np.float64]:
     """Return an ellipse (24, 3) that spans +-rx and the interval `y` at height `z`."""
     ry = (y[1] - y[0]) / 2
     return np.column_stack([circle(rx, 24, (0.0, (y[0] + y[1]) / 2), ry / rx), np.full(24, z)])

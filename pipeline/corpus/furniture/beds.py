@@ -11,8 +11,8 @@ from pipeline.corpus.furniture.bent import tube
 from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme, cane
 from pipeline.corpus.furniture.legs import leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, cushion, pillow, rod
-from pipeline.corpus.furniture.upholstery import Span, channels, duvet, throw_pillow, tufted_panel
+from pipeline.corpus.furniture.solids import Interval, Solid, around, box, cushion, pillow, rod
+from pipeline.corpus.furniture.upholstery import channels, duvet, throw_pillow, tufted_panel
 
 SOFT = frozenset({"upholstered", "tufted", "wing"})
 
@@ -59,7 +59,9 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     return Shape(parts + bedding(rng, inner_x, inner_y, low, top, scheme, h - top))
 
 
-def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, scheme: Scheme, room: float = 1.0) -> tuple[Piece, ...]:
+def bedding(
+    rng: np.random.Generator, x: Interval, y: Interval, low: float, top: float, scheme: Scheme, room: float = 1.0
+) -> tuple[Piece, ...]:
     """Return a mattress from `low` to `top`, a duvet turned down over it, pillows at the head, often cushions and a throw.
 
     There are cushions only where there is `room` above for them.
@@ -97,7 +99,7 @@ def bedding(rng: np.random.Generator, x: Span, y: Span, low: float, top: float, 
     return parts
 
 
-def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:  # noqa: PLR0911 - one return per form
+def _head(rng: np.random.Generator, form: str, x: Interval, y: Interval, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:  # noqa: PLR0911 - one return per form
     """Return a headboard over `x`, `y` up to `h`."""
     w = x[1] - x[0]
     wood = scheme.timber if form == "slatted" else scheme.body
@@ -128,9 +130,7 @@ def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h:
         xs = np.linspace(inner[0] + 0.05, inner[1] - 0.05, count)
         rails = [box(inner, (y[0] + 0.01, y[1] - 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (h - 0.09, h - 0.005))]
         return parts + pieces(
-            "headboard",
-            rails + [box(around(0.014, a), (y[0] + 0.018, y[1] - 0.018), (lift + 0.21, h - 0.09), 0.002) for a in xs],
-            wood,
+            "headboard", rails + [box(around(0.014, a), (y[0] + 0.018, y[1] - 0.018), (lift + 0.21, h - 0.09), 0.002) for a in xs], wood
         )
     weave = rng.random() < scheme.manner.cane
     field = (inner[0] + 0.07, inner[1] - 0.07)
@@ -144,7 +144,7 @@ def _head(rng: np.random.Generator, form: str, x: Span, y: Span, lift: float, h:
     return parts
 
 
-def _hoop(x: Span, y: float, h: float, scheme: Scheme) -> list[Solid]:
+def _hoop(x: Interval, y: float, h: float, scheme: Scheme) -> list[Solid]:
     """Return a bent tube with bars in it, and knobs where there is ornament."""
     r = 0.017
     w = x[1] - x[0]

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.solids import Face, Solid, Vector, slab, stack
+from pipeline.corpus.furniture.solids import Face, Interval, Solid, Spot, Vector, slab, stack
 
 Points = NDArray[np.float64]
 
 
-def arc(centre: tuple[float, float], radius: float, start: float, end: float, steps: int, squash: float = 1.0) -> Points:
+def arc(centre: Spot, radius: float, start: float, end: float, steps: int, squash: float = 1.0) -> Points:
     """Return points (steps + 1, 2) on a circle from angle `start` to `end` [rad]; `squash` scales the second axis."""
     angles = np.linspace(start, end, steps + 1)
     return np.stack([centre[0] + radius * np.cos(angles), centre[1] + radius * squash * np.sin(angles)], axis=1)
@@ -79,7 +79,7 @@ def _across(direction: Points) -> Points:
     return np.asarray(u / np.linalg.norm(u))
 
 
-def band(path: Points, thick: float, z: tuple[float, float], *, closed: bool = False) -> list[Solid]:
+def band(path: Points, thick: float, z: Interval, *, closed: bool = False) -> list[Solid]:
     """Return an upright wall over a path in plan (m, 2), `thick` wide, half to each side: one stave per segment."""
     left, right = _sides(path, thick, closed)
     staves = []
@@ -106,7 +106,7 @@ def wall(path: Points, thick: float, low: float, tops: Sequence[float] | Points,
     return segments
 
 
-def upright(outline: Points, x: tuple[float, float], bevel: float) -> Solid:
+def upright(outline: Points, x: Interval, bevel: float) -> Solid:
     """Return a board over a convex outline (n, 2) in (y, z), counter-clockwise, across `x`, its edges eased by `bevel`."""
     board = slab(outline, x, bevel)
     return Solid(board.vertices[:, [2, 0, 1]], board.faces)
@@ -136,7 +136,7 @@ def sheet(profile: Points, thick: float, width: float | Sequence[float] | Points
     return segments
 
 
-def prism(outline: Points, axis: str, span: tuple[float, float]) -> Solid:
+def prism(outline: Points, axis: str, span: Interval) -> Solid:
     """Return the solid over a convex outline (n, 2), counter-clockwise, along an axis: x over (y, z), y over (x, z), z over (x, y)."""
     rings = []
     for at in span:

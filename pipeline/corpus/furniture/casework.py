@@ -13,7 +13,7 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.fronts import GAP, FrontStyle, Rect, Side, door, drawer, reach, sliding_door
 from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, around, beam, box, rod
+from pipeline.corpus.furniture.solids import Interval, Solid, around, beam, box, rod
 
 Feet = Literal["plinth", "tapered", "square", "sled", "none", "hairpin"]
 CellKind = Literal["drawer", "left", "right", "pair", "open", "flap", "lift", "blank", "slide"]
@@ -105,14 +105,7 @@ def _half(edge: float, board: float, *, first: bool) -> float:
 
 
 def _column(
-    name: str,
-    column: Column,
-    x: tuple[float, float],
-    outer: tuple[float, float],
-    y: tuple[float, float],
-    z: tuple[float, float],
-    face: float,
-    how: Case,
+    name: str, column: Column, x: Interval, outer: Interval, y: Interval, z: Interval, face: float, how: Case
 ) -> tuple[list[Piece], list[Mover]]:
     """Fill one column between `x`, its fronts over `outer`."""
     b = how.board
@@ -140,15 +133,7 @@ def _column(
     return base, movers
 
 
-def _cell(
-    name: str,
-    cell: Cell,
-    x: tuple[float, float],
-    y: tuple[float, float],
-    z: tuple[float, float],
-    rect: Rect,
-    how: Case,
-) -> tuple[list[Piece], list[Mover]]:
+def _cell(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect: Rect, how: Case) -> tuple[list[Piece], list[Mover]]:
     """Fill one compartment over `x`, `y`, `z` with its shelves and its front over `rect`."""
     style = cell.panel or how.style
     base: list[Piece] = []
@@ -180,7 +165,7 @@ def _cell(
 
 
 def _inner(
-    name: str, count: int, x: tuple[float, float], y: tuple[float, float], bottom: float, how: Case, doors: tuple[str, ...]
+    name: str, count: int, x: Interval, y: Interval, bottom: float, how: Case, doors: tuple[str, ...]
 ) -> tuple[list[Piece], list[Mover]]:
     """Return drawers behind doors, under a board of their own: narrower than the cell, so that they pass the open doors."""
     inside = (x[0] + 0.022, x[1] - 0.022)
@@ -195,9 +180,7 @@ def _inner(
     return list(pieces(f"{name}_inner_top", box(x, (face, y[1]), (top, top + 0.016)), how.body)), drawers
 
 
-def _sliding(
-    name: str, cell: Cell, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], rect: Rect, how: Case
-) -> tuple[list[Piece], list[Mover]]:
+def _sliding(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect: Rect, how: Case) -> tuple[list[Piece], list[Mover]]:
     """Return one or two pairs of leaves on two tracks before an interior of uprights, shelves and hat shelves."""
     style = cell.panel or how.style
     rear = rect.y + style.thickness + TRACK
@@ -229,7 +212,7 @@ def _sliding(
     return base, movers
 
 
-def feet(kind: Feet, x: tuple[float, float], y: tuple[float, float], height: float, finish: Finish) -> tuple[Piece, ...]:
+def feet(kind: Feet, x: Interval, y: Interval, height: float, finish: Finish) -> tuple[Piece, ...]:
     """Return what a piece stands on, under the rectangle `x`, `y`, from the floor to `height` [m]."""
     if height <= 0 or kind == "none":
         return ()

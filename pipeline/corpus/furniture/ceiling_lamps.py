@@ -150,9 +150,7 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     if form == "disc":
         rim = min(0.4 * h, 0.05)
         parts = pieces(
-            "mount",
-            revolve([(0.5 * w, h - rim), (0.5 * w, h)], 32, squash=d / w),
-            metal if rng.random() < 0.6 else scheme.timber,
+            "mount", revolve([(0.5 * w, h - rim), (0.5 * w, h)], 32, squash=d / w), metal if rng.random() < 0.6 else scheme.timber
         )
         profile = [(0.26 * w, 0.0), (0.38 * w, 0.08 * h), (0.45 * w, 0.35 * h), (0.48 * w, h - rim)]
         return Shape(parts + pieces("diffuser", revolve(profile, 32, squash=d / w), GLOW))
@@ -179,10 +177,7 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     parts = pieces("ring", outer, GLOW) + pieces(
         "hoop", [s.scaled(squash) for s in ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0.4 * h, 0.6 * h), 32)], metal
     )
-    bars = [
-        box(around(0.42 * w), (-0.012, 0.012), (0.6 * h, 0.72 * h)),
-        box((-0.012, 0.012), around(0.42 * d), (0.72 * h, 0.84 * h)),
-    ]
+    bars = [box(around(0.42 * w), (-0.012, 0.012), (0.6 * h, 0.72 * h)), box((-0.012, 0.012), around(0.42 * d), (0.72 * h, 0.84 * h))]
     return Shape(parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
 
 

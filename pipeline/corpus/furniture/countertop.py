@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, STEEL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid
 from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, revolve, ring, rod, slab
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, cushion, revolve, ring, rod, slab
 
 WIRE = 0.004  # radius of a bail [m]
 COFFEE = Finish("coffee", (0.03, 0.012, 0.006), 0.2, density=1000)
@@ -114,7 +114,7 @@ def coffee_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     return Shape(base, tuple(movers))
 
 
-def _capsule_lever(w: float, y: tuple[float, float], z: float, h: float) -> Mover:
+def _capsule_lever(w: float, y: Interval, z: float, h: float) -> Mover:
     """Return a hoop that lies on the head and is lifted to put a capsule in; it turns about its rear end."""
     half = 0.3 * w
     solids = [box(around(0.006, s * half), y, (z, h - 0.008), 0.002) for s in (-1, 1)]
@@ -162,21 +162,14 @@ def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     else:
         reach = w / 2 - r
         for s in (-1, 1):
-            ear = [
-                box(
-                    around(0.006, s * (r + reach - 0.006)),
-                    (-0.035, 0.035),
-                    (0.80 * rim, 0.80 * rim + 0.012),
-                    0.003,
-                )
-            ]
+            ear = [box(around(0.006, s * (r + reach - 0.006)), (-0.035, 0.035), (0.80 * rim, 0.80 * rim + 0.012), 0.003)]
             span = sorted((s * (r - 0.004), s * (r + reach - 0.012)))
             ear += [box((span[0], span[1]), around(0.006, sy * 0.028), (0.80 * rim, 0.80 * rim + 0.012), 0.002) for sy in (-1, 1)]
             base += pieces(f"ear_{'left' if s < 0 else 'right'}", ear, grip, "line_fixed_handle", f"ear_{s}")
     return Shape(base, tuple(movers))
 
 
-def bail(radii: tuple[float, float], z: float, centre: tuple[float, float], finish: Finish) -> Mover:
+def bail(radii: Spot, z: float, centre: Spot, finish: Finish) -> Mover:
     """Return a bucket's handle: half a hoop that lies level behind the wall and swings over to the front.
 
     `radii` [m]: half of its width, and how far it reaches back.
@@ -190,7 +183,7 @@ def bail(radii: tuple[float, float], z: float, centre: tuple[float, float], fini
     return Mover("bail", parts, "revolute", (1, 0, 0), (centre[0], centre[1], z), math.pi, "hinge_handle", "handle", UP)
 
 
-def lugs(r: float, z: float, centre: tuple[float, float]) -> list[Solid]:
+def lugs(r: float, z: float, centre: Spot) -> list[Solid]:
     """Return the two lugs on which a bail turns."""
     solids = []
     for s in (-1, 1):

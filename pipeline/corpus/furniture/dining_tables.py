@@ -14,7 +14,7 @@ from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, beam, box, circle, polar, revolve, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, beam, box, circle, polar, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import case_style, front_style
 
 
@@ -34,7 +34,7 @@ def outline(rng: np.random.Generator, scheme: Scheme, w: float, d: float) -> NDA
     return rounded_rectangle(around(w / 2), around(d / 2), radius, 4 if radius < 0.2 else 8)
 
 
-def top(edge: NDArray[np.float64], z: tuple[float, float], scheme: Scheme) -> list[Solid]:
+def top(edge: NDArray[np.float64], z: Interval, scheme: Scheme) -> list[Solid]:
     """Return a table top: a plain board with eased edges, or where there is ornament one with a moulded rim below it."""
     ease = min(scheme.manner.edge, 0.4 * (z[1] - z[0]))
     if scheme.manner.ornament < 0.4:
@@ -64,7 +64,7 @@ def legged_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, withou
     return Shape(parts)
 
 
-def rails(half: tuple[float, float], z: tuple[float, float], gap: float) -> list[Solid]:
+def rails(half: Spot, z: Interval, gap: float) -> list[Solid]:
     """Return four rails between the tops of legs at (+-half), each `gap` short of a leg's middle."""
     x, y = half
     return [box(around(x - gap), around(0.01, s * y), z, 0.002) for s in (-1, 1)] + [
@@ -72,7 +72,7 @@ def rails(half: tuple[float, float], z: tuple[float, float], gap: float) -> list
     ]
 
 
-def _brace(kind: str, half: tuple[float, float], h: float, finish: Finish) -> tuple[Piece, ...]:
+def _brace(kind: str, half: Spot, h: float, finish: Finish) -> tuple[Piece, ...]:
     """Return what keeps side frames apart: a beam under the top, or nothing."""
     if kind not in WIDE:
         return ()
@@ -139,15 +139,7 @@ def fluted_drum(radius: float, height: float, scheme: Scheme) -> tuple[Piece, ..
     """Return a round base clad in upright half-round staves."""
     core = revolve([(radius, 0.0), (radius, height)], 24)
     r = math.pi * radius / 30
-    staves = [
-        rod(
-            polar(radius + 0.85 * r, a, 0.0),
-            polar(radius + 0.85 * r, a, height),
-            0.95 * r,
-            n=6,
-        )
-        for a in turns(30)
-    ]
+    staves = [rod(polar(radius + 0.85 * r, a, 0.0), polar(radius + 0.85 * r, a, height), 0.95 * r, n=6) for a in turns(30)]
     return pieces("drum", core, scheme.body) + pieces("staves", staves, scheme.body)
 
 

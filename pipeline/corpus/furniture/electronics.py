@@ -192,9 +192,7 @@ def printer(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     base += pieces("deck", box(inner, (y[0] + 0.004, y[1] - t), (tray, tray + 0.012)), trim)
     base += pieces("head", box(inner, (y[0] + 0.002, y[1] - t), (0.58 * h, top), 0.003), finish)
     base += pieces(
-        "paper",
-        box(around(0.36 * w), (y[0] + 0.03, y[1] - 0.08), (tray + 0.012, tray + 0.018)),
-        Finish("paper", (0.85, 0.85, 0.83), 0.9),
+        "paper", box(around(0.36 * w), (y[0] + 0.03, y[1] - 0.08), (tray + 0.012, tray + 0.018)), Finish("paper", (0.85, 0.85, 0.83), 0.9)
     )
     base += pieces("feet", [box(around(0.02, s * 0.4 * w), (-0.35 * d, 0.4 * d), (0.0, 0.006)) for s in (-1, 1)], RUBBER)
     plane = y[0] + 0.002

@@ -11,7 +11,7 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.panels import LIP, FrontStyle, HandleStyle, PanelStyle, Rect, panel
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Piece, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, hull, revolve, ring, rod, standing
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, hull, revolve, ring, rod, standing
 
 __all__ = ["FrontStyle", "HandleStyle", "PanelStyle", "Rect", "button", "door", "drawer", "handle", "knob", "lid", "panel", "sliding_door"]
 
@@ -29,9 +29,7 @@ def reach(handle: HandleStyle) -> float:
     return REACHES.get(handle, 0.0)
 
 
-def handle(
-    style: FrontStyle, rect: Rect, *, upright: bool, at: tuple[float, float], length: float, name: str = "handle"
-) -> tuple[Piece, ...]:
+def handle(style: FrontStyle, rect: Rect, *, upright: bool, at: Spot, length: float, name: str = "handle") -> tuple[Piece, ...]:
     """Return the handle of a front with its middle `at` (x, z); `upright` turns a bar along z.
 
     It collides as one solid, but for a bar on feet: fingers come behind that.
@@ -72,7 +70,7 @@ def _round_grip(style: HandleStyle) -> list[Solid]:
     return rosette + drop
 
 
-def _bar(style: FrontStyle, at: Axis3, along: tuple[float, float]) -> list[Solid]:
+def _bar(style: FrontStyle, at: Axis3, along: Spot) -> list[Solid]:
     """Return a round or flat bar on two feet; `along` are its half lengths in x and z."""
     x, y, z = at
     stand = reach(style.handle if style.handle in ("bar", "long") else "flat")
@@ -89,7 +87,7 @@ def _bar(style: FrontStyle, at: Axis3, along: tuple[float, float]) -> list[Solid
     return solids
 
 
-def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float, *, grip: tuple[float, float] | None = None) -> Mover:
+def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float, *, grip: Spot | None = None) -> Mover:
     """Return a door over `rect`, hinged at the front edge of one side, that opens by `upper` [rad].
 
     About the outer edge of its face a panel of any thickness turns without touching what is behind or beside it.
@@ -144,13 +142,7 @@ def sliding_door(name: str, rect: Rect, style: FrontStyle, towards: float, trave
 
 
 def drawer(
-    name: str,
-    rect: Rect,
-    style: FrontStyle,
-    cell: tuple[tuple[float, float], tuple[float, float], float],
-    inside: Finish,
-    *,
-    after: tuple[str, ...] = (),
+    name: str, rect: Rect, style: FrontStyle, cell: tuple[Interval, Interval, float], inside: Finish, *, after: tuple[str, ...] = ()
 ) -> Mover:
     """Return a drawer: a front over `rect`, and a bottom, two sides and a back that run in its cell.
 
@@ -215,14 +207,14 @@ def top_knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: floa
     return Mover(name, parts, "revolute", (0, 0, -1), at, turn, "hinge_knob", "knob", UP)
 
 
-def button(name: str, x: tuple[float, float], z: tuple[float, float], y: float, finish: Finish) -> Mover:
+def button(name: str, x: Interval, z: Interval, y: float, finish: Finish) -> Mover:
     """Return a push button that stands 8 mm out of the plane `y` and is pressed by 4 mm."""
     cap = box(x, (y - 0.008, y - 0.0045), z, 0.001)
     at = ((x[0] + x[1]) / 2, y, (z[0] + z[1]) / 2)
     return Mover(name, pieces("button", cap, finish), "prismatic", (0, 1, 0), at, 0.004, "slider_button", "button")
 
 
-def top_button(name: str, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], finish: Finish, press: float) -> Mover:
+def top_button(name: str, x: Interval, y: Interval, z: Interval, finish: Finish, press: float) -> Mover:
     """Return a button on a level plane: its cap over `x`, `y`, `z` goes down by `press` [m]."""
     cap = box(x, y, z, 0.001)
     at = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2, z[1])

@@ -30,10 +30,7 @@ def television(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     glass = box(around(w / 2 - 0.008), (-0.017, -0.015), (low + 0.016, h - 0.008))
     belly = box(around(0.3 * w), (0.02, 0.05), (low + 0.04, 0.6 * h), 0.01)
     if form == "foot":
-        feet = [
-            box(around(0.2 * w), around(d / 2), (0.0, 0.012), 0.003),
-            box(around(0.04 * w), (0.0, 0.035), (0.012, low + 0.05)),
-        ]
+        feet = [box(around(0.2 * w), around(d / 2), (0.0, 0.012), 0.003), box(around(0.04 * w), (0.0, 0.035), (0.012, low + 0.05))]
     else:
         feet = [box(around(0.012, s * 0.36 * w), around(d / 2), (0.0, 0.012), 0.003) for s in (-1, 1)]
         feet += [box(around(0.01, s * 0.36 * w), (-0.01, 0.015), (0.012, low)) for s in (-1, 1)]

@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, PLASTIC, STEEL, STONE, Finish, Scheme, one_of
 from pipeline.corpus.furniture.fronts import reach
 from pipeline.corpus.furniture.shape import Mover, Piece, Shape, Size, join_shapes, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, revolve, rod, shell, strips, walls
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, revolve, rod, shell, strips, walls
 from pipeline.corpus.furniture.storage import front_style
 
 PLINTH = 0.1  # height of a kitchen unit's recessed plinth [m]
@@ -72,9 +72,7 @@ def tall_unit(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return case(size, [Column(1, cells)], how)
 
 
-def bowl(
-    x: tuple[float, float], y: tuple[float, float], top: float, depth: float, finish: Finish, wall: float = 0.008
-) -> tuple[Piece, ...]:
+def bowl(x: Interval, y: Interval, top: float, depth: float, finish: Finish, wall: float = 0.008) -> tuple[Piece, ...]:
     """Return an open basin under the rectangle `x`, `y`: a bottom and four walls whose rims end at `top` [m]."""
     low = top - depth
     solids = [box(x, y, (low - wall, low)), *walls(x, y, (low, top), wall)]
@@ -155,7 +153,7 @@ def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     return join_shapes(_topless(shape, new), tap(0.0, d / 2 - 0.055, body, h - body, 0.13, scheme.handle))
 
 
-def _vessel(rx: float, ry: float, centre: tuple[float, float], z: tuple[float, float]) -> list[Solid]:
+def _vessel(rx: float, ry: float, centre: Spot, z: Interval) -> list[Solid]:
     """Return an oval open basin that stands on a counter, its wall flaring upwards."""
     n, squash = 24, ry / rx
     rings = []

@@ -100,11 +100,7 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     if form == "globe":
         r = min(w / 2, 0.42 * d)
         y = -d / 2 + r
-        parts = pieces(
-            "plate",
-            standing([slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)], (0, back, 0.5 * h)),
-            metal,
-        )
+        parts = pieces("plate", standing([slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)], (0, back, 0.5 * h)), metal)
         neck = rod((0, back - 0.016, 0.5 * h), (0, y + 0.95 * r, 0.5 * h), 0.009, n=8)
         return Shape(parts + pieces("neck", neck, metal) + shade(rng, scheme, "globe", r, around(min(r, 0.5 * h), 0.5 * h), (0.0, y), 18))
     r = min(w / 2, 0.4 * d) if form == "shade" else min(0.24 * w, 0.4 * d)

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import curve, tube
 from pipeline.corpus.furniture.finishes import Finish, Scheme, one_of
-from pipeline.corpus.furniture.solids import Solid, around, beam, box, revolve, rod, stack
+from pipeline.corpus.furniture.solids import Solid, Spot, around, beam, box, revolve, rod, stack
 
-Spot = tuple[float, float]
 METAL = frozenset({"hairpin", "pipe", "blade", "sled", "cross"})
 WIDE = frozenset({"sled", "cross", "plank"})  # forms that join the two legs of a side
 

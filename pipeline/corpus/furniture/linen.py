@@ -9,7 +9,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import FABRICS, PAPER, Finish, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, rod, rounded_rectangle, slab, standing
+from pipeline.corpus.furniture.solids import Interval, Solid, around, box, circle, cushion, rod, rounded_rectangle, slab, standing
 
 TERRY = ("snow_cloth", "cream_cloth", "grey_cloth", "linen", "blue_cloth", "mint_cloth", "taupe_cloth", "rust_cloth", "charcoal")
 
@@ -45,9 +45,7 @@ def towel(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     return Shape(parts + left + _towel_over_bar((0.02 * w, 0.46 * w), d, z, 0.8 * z, other, rng))
 
 
-def _towel_over_bar(
-    x: tuple[float, float], d: float, top: float, drop: float, cloth: Finish, rng: np.random.Generator
-) -> tuple[Piece, ...]:
+def _towel_over_bar(x: Interval, d: float, top: float, drop: float, cloth: Finish, rng: np.random.Generator) -> tuple[Piece, ...]:
     """Return a towel over a bar at height `top`: the front fall `drop` long, the back one a little shorter, a border near the hem."""
     t, half = 0.012, 0.016
     front, back = top - drop, top - drop * float(rng.uniform(0.75, 0.9))

@@ -147,16 +147,7 @@ def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
         px = s * (x - 0.035)
         parts += pieces("arms", cushion(around(0.035, px), (-0.5 * y, 0.3 * y), (seat + 0.16, seat + 0.21), 0.022, 2), scheme.soft)
         parts += pieces("arm_struts", box(around(0.008, px), (-0.12 * y, 0.1 * y), (seat - 0.05, seat + 0.16), 0.002), wood)
-    star = [
-        rod(
-            polar(0.03, a, 0.06),
-            polar(0.44 * min(w, d), a, 0.014),
-            0.018,
-            0.012,
-            8,
-        )
-        for a in turns(5, math.pi / 2)
-    ]
+    star = [rod(polar(0.03, a, 0.06), polar(0.44 * min(w, d), a, 0.014), 0.018, 0.012, 8) for a in turns(5, math.pi / 2)]
     column = revolve([(0.03, 0.03), (0.03, 0.1), (0.024, 0.11), (0.024, seat - 0.12), (0.13, seat - 0.11), (0.13, seat - 0.095)], 16)
     return parts + pieces("foot", star + column, scheme.handle)
 

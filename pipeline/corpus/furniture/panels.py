@@ -10,7 +10,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GLASS, MIRROR, Finish
 from pipeline.corpus.furniture.shape import Piece, group_pieces, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, slab, stack
+from pipeline.corpus.furniture.solids import Interval, Solid, around, box, slab, stack
 
 PanelStyle = Literal["slab", "shaker", "raised", "glass", "dark_glass", "slats", "reeded", "cane", "mirror"]
 HandleStyle = Literal["bar", "long", "flat", "knob", "ring", "cup", "edge", "groove", "none"]
@@ -23,8 +23,8 @@ CANE = Finish("cane", (0.55, 0.40, 0.22), 0.85, pattern="weave", density=300)
 class Rect:
     """A front's place: intervals in x and z, and the plane y of its face [m]."""
 
-    x: tuple[float, float]
-    z: tuple[float, float]
+    x: Interval
+    z: Interval
     y: float
 
     @property
@@ -86,7 +86,7 @@ def _panel(rect: Rect, style: FrontStyle) -> tuple[Piece, ...]:
     return pieces("front_frame", frame(rect, inner, depth), style.finish) + _filling(inner, style)
 
 
-def frame(rect: Rect, inner: Rect, depth: tuple[float, float], bevel: float = 0.002) -> list[Solid]:
+def frame(rect: Rect, inner: Rect, depth: Interval, bevel: float = 0.002) -> list[Solid]:
     """Return stiles and rails around `inner`, over the interval `depth` in y [m]."""
     return [
         box((rect.x[0], inner.x[0]), depth, rect.z, bevel),

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
 from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, SOIL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, circle, polar, ring, rod, slab
+from pipeline.corpus.furniture.solids import Solid, Spot, circle, polar, ring, rod, slab
 
 GOLDEN = math.pi * (3 - math.sqrt(5))
 BARK = Finish("bark", (0.16, 0.10, 0.055), 0.9, pattern="speckle", density=500)
@@ -40,31 +40,10 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
     if kind == 3 and h > 0.15:  # a cylinder in a wooden stand
         lift = 0.35 * h
         parts += pieces(
-            "stand",
-            [
-                rod(
-                    polar(0.96 * r, a, 0),
-                    polar(0.96 * r, a, 0.72 * h),
-                    0.011,
-                    n=8,
-                )
-                for a in turns(4, 0.4)
-            ],
-            scheme.timber,
+            "stand", [rod(polar(0.96 * r, a, 0), polar(0.96 * r, a, 0.72 * h), 0.011, n=8) for a in turns(4, 0.4)], scheme.timber
         )
         bar = 0.95 * r - 0.012
-        parts += pieces(
-            "stand_bars",
-            [
-                rod(
-                    polar(-bar, 0.4, lift - 0.012),
-                    polar(bar, 0.4, lift - 0.012),
-                    0.009,
-                    n=6,
-                )
-            ],
-            scheme.timber,
-        )
+        parts += pieces("stand_bars", [rod(polar(-bar, 0.4, lift - 0.012), polar(bar, 0.4, lift - 0.012), 0.009, n=6)], scheme.timber)
         r = r * 0.9
     steps = {
         0: ((0.72, 0.0), (1.0, 1.0)),
@@ -88,7 +67,7 @@ def _leaves(
     return pieces("leaves", blades(np.array(roots), np.array(tips), width, belly=belly, n=n), finish)
 
 
-def _bush(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _bush(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
     """Many small leaves in pairs along stems that fan out of the pot."""
     stems: list[Solid] = []
     roots: list[Points] = []
@@ -110,7 +89,7 @@ def _bush(rng: np.random.Generator, half: tuple[float, float], crown: float, h: 
     return pieces("stems", stems, BARK) + _leaves(roots, tips, 0.10 * min(half) + 0.026, green)
 
 
-def _palm(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _palm(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
     """Arching fronds with leaflets on both sides."""
     stems: list[Solid] = []
     roots: list[Points] = []
@@ -159,7 +138,7 @@ def _big_leaf(base: Points, direction: float, droop: float, size: float) -> tupl
     return roots, tips
 
 
-def _monstera(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _monstera(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
     """Long stalks, each with one large leaf split into lobes."""
     stems: list[Solid] = []
     roots: list[Points] = []
@@ -180,7 +159,7 @@ def _monstera(rng: np.random.Generator, half: tuple[float, float], crown: float,
     return pieces("stems", stems, green) + _leaves(roots, tips, 0.3 * size, green)
 
 
-def _fig(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _fig(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
     """Build a thin trunk with large upright leaves around its upper half."""
     top = h - 0.16
     lean = 0.06 * half[0]
@@ -202,7 +181,7 @@ def _fig(rng: np.random.Generator, half: tuple[float, float], crown: float, h: f
     )
 
 
-def _olive(rng: np.random.Generator, half: tuple[float, float], crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _olive(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
     """Build a bare stem with a round head of twigs and small grey leaves."""
     trunk_top = crown + 0.45 * (h - crown)
     trunk = curve([(0, 0, crown - 0.008), (0.05 * half[0], 0, 0.5 * (crown + trunk_top)), (0, 0, trunk_top)], 2)

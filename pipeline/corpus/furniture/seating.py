@@ -11,7 +11,7 @@ from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane, one_of
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, beam, box, cushion, revolve, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.solids import Solid, Spot, around, beam, box, cushion, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.styles import CLASSIC, ORIENTAL
 from pipeline.corpus.furniture.upholstery import seat_cushion
 
@@ -44,9 +44,7 @@ def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     middle = (back_y - y) / 2 + 0.3 * thick
     parts = pieces("legs", [s.moved((0, middle, 0)) for s in legs(kind, half, under, thick)], wood)
     parts += pieces(
-        "rail",
-        slab(rounded_rectangle(around(x - 0.012), (-y + 0.016, back_y + 0.5 * thick), 0.02, 2), (under, under + rail), 0.004),
-        wood,
+        "rail", slab(rounded_rectangle(around(x - 0.012), (-y + 0.016, back_y + 0.5 * thick), 0.02, 2), (under, under + rail), 0.004), wood
     )
     span_x, span_y = (-x, x), (-y, back_y - 0.55 * thick)
     if form == "wood":
@@ -74,19 +72,14 @@ def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     if kind in ("square", "ming", "turned") and rng.random() < 0.55:
         z = 0.36 * under
         low = [
-            box(
-                around(0.009, s * half[0]),
-                (middle - half[1] + 0.5 * thick, middle + half[1] - 0.5 * thick),
-                (z, z + 0.026),
-                0.002,
-            )
+            box(around(0.009, s * half[0]), (middle - half[1] + 0.5 * thick, middle + half[1] - 0.5 * thick), (z, z + 0.026), 0.002)
             for s in (-1, 1)
         ]
         parts += pieces("stretchers", low, wood)
     return parts
 
 
-def _bucket(x: float, profile: list[tuple[float, float]], thick: float, steps: int = 3) -> list[Solid]:
+def _bucket(x: float, profile: list[Spot], thick: float, steps: int = 3) -> list[Solid]:
     """Return a seat and a back in one bent board: `profile` in (y, z), as wide as 2 x, a little narrower at both ends."""
     path = curve([np.array(p) for p in profile], steps)
     t = np.linspace(-1, 1, len(path))
@@ -238,14 +231,7 @@ def _yoke(form: str, x: float, y: float, seat: float, arm: float, h: float) -> t
     if form == "official":
         upper += tube(
             curve(
-                [
-                    (-x - 0.03, y, h - 0.04),
-                    (-0.5 * x, y, h - 0.028),
-                    (0, y, h - 0.02),
-                    (0.5 * x, y, h - 0.028),
-                    (x + 0.03, y, h - 0.04),
-                ],
-                2,
+                [(-x - 0.03, y, h - 0.04), (-0.5 * x, y, h - 0.028), (0, y, h - 0.02), (0.5 * x, y, h - 0.028), (x + 0.03, y, h - 0.04)], 2
             ),
             0.017,
             8,

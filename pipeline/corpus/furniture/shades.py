@@ -11,10 +11,8 @@ from pipeline.corpus.furniture.bent import band, curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Finish, Scheme, cane, one_of
 from pipeline.corpus.furniture.finishes import shade as tinted
 from pipeline.corpus.furniture.shape import Piece, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, revolve, ring, rod, slab
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, revolve, ring, rod, slab
 
-Spot = tuple[float, float]
-Span = tuple[float, float]
 CLOTH = Finish("shade_cloth", (0.80, 0.75, 0.65), 0.9, density=150)
 WALL = 0.006
 
@@ -25,7 +23,7 @@ def shade_word(rng: np.random.Generator, scheme: Scheme, without: str) -> str:
     return one_of(rng, words)
 
 
-def cord(at: Spot, z: Span) -> list[Solid]:
+def cord(at: Spot, z: Interval) -> list[Solid]:
     """Return a cord from z[0] up to z[1]."""
     return [rod((*at, z[0]), (*at, z[1]), 0.0035, n=6)]
 
@@ -45,7 +43,7 @@ def bulb(z: float, tall: float, at: Spot) -> tuple[Piece, ...]:
 
 
 def shade(
-    rng: np.random.Generator, scheme: Scheme, kind: str, radius: float, z: Span, at: Spot = (0.0, 0.0), n: int = 24
+    rng: np.random.Generator, scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot = (0.0, 0.0), n: int = 24
 ) -> tuple[Piece, ...]:
     """Return a shade of `radius` over heights `z`: hollow with a bulb and spokes in it, or a lit globe."""
     low, high = z
@@ -82,7 +80,7 @@ def shade(
     return parts + _fittings(radius, profile[-1][0], z, at, metal)
 
 
-def _ball(scheme: Scheme, kind: str, radius: float, z: Span, at: Spot, n: int) -> tuple[Piece, ...]:
+def _ball(scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot, n: int) -> tuple[Piece, ...]:
     """Build a lit globe with its cap, or a squat ball of paper on a neck."""
     low, high = z
     tall = high - low
@@ -121,7 +119,7 @@ def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
     return walls
 
 
-def _fittings(radius: float, top: float, z: Span, at: Spot, metal: Finish) -> tuple[Piece, ...]:
+def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Finish) -> tuple[Piece, ...]:
     """Build the spokes that carry an open shade whose upper rim has radius `top`, its socket and its bulb, where there is room for them."""
     low, high = z
     tall = high - low
@@ -148,7 +146,7 @@ def _fittings(radius: float, top: float, z: Span, at: Spot, metal: Finish) -> tu
     return parts
 
 
-def _lantern(scheme: Scheme, radius: float, z: Span, at: Spot) -> tuple[Piece, ...]:
+def _lantern(scheme: Scheme, radius: float, z: Interval, at: Spot) -> tuple[Piece, ...]:
     """Four paper panes in a frame of thin wood with a cap and a foot."""
     low, high = z
     r = radius / math.sqrt(2) * 1.35
@@ -157,12 +155,7 @@ def _lantern(scheme: Scheme, radius: float, z: Span, at: Spot) -> tuple[Piece, .
     wood = scheme.timber
     x, y = at
     posts = [
-        box(
-            around(t / 2, x + a * (r - t / 2)),
-            around(t / 2, y + b * (r - t / 2)),
-            (low + 0.012, high - 0.03),
-            0.002,
-        )
+        box(around(t / 2, x + a * (r - t / 2)), around(t / 2, y + b * (r - t / 2)), (low + 0.012, high - 0.03), 0.002)
         for a in (-1, 1)
         for b in (-1, 1)
     ]
@@ -187,7 +180,7 @@ def _lantern(scheme: Scheme, radius: float, z: Span, at: Spot) -> tuple[Piece, .
     return pieces("frame", posts + bars + caps, wood) + pieces("panes", panes, GLOW)
 
 
-def _cage(scheme: Scheme, radius: float, z: Span, at: Spot) -> tuple[Piece, ...]:
+def _cage(scheme: Scheme, radius: float, z: Interval, at: Spot) -> tuple[Piece, ...]:
     """Bent wires around a bare bulb, hoops that hold them, a cap with the socket."""
     low, high = z
     tall = high - low

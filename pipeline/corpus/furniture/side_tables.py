@@ -80,11 +80,7 @@ def round_end_table(rng: np.random.Generator, form: str, size: Size, scheme: Sch
     if rng.random() < 0.4 and form == "tripod":
         parts += pieces(
             "shelf",
-            prism(
-                np.array([polar(0.26 * w, a) for a in turns(3, -math.pi / 2)]),
-                "z",
-                (0.38 * h, 0.38 * h + 0.014),
-            ),
+            prism(np.array([polar(0.26 * w, a) for a in turns(3, -math.pi / 2)]), "z", (0.38 * h, 0.38 * h + 0.014)),
             GLASS if rng.random() < 0.4 else scheme.body,
         )
     return Shape(parts)

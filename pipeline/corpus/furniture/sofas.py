@@ -12,8 +12,8 @@ from pipeline.corpus.furniture.finishes import Finish, Scheme, one_of
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
 from pipeline.corpus.furniture.lounge import lounge_chair
 from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, beam, box, cushion, revolve, rod
-from pipeline.corpus.furniture.upholstery import Span, bolster, channels, seat_cushion, throw_pillow, tufted_panel
+from pipeline.corpus.furniture.solids import Interval, Solid, around, beam, box, cushion, revolve, rod
+from pipeline.corpus.furniture.upholstery import bolster, channels, seat_cushion, throw_pillow, tufted_panel
 
 ARMS = {"track": 0.13, "legs": 0.09, "roll": 0.2, "chesterfield": 0.2, "camelback": 0.17, "cloud": 0.22, "u_shape": 0.15}
 LIFTS = {"track": 0.05, "legs": 0.15, "roll": 0.09, "chesterfield": 0.1, "camelback": 0.17, "cloud": 0.03, "u_shape": 0.06}
@@ -68,7 +68,7 @@ def _piping(rng: np.random.Generator, scheme: Scheme) -> Finish | None:
     return scheme.second if rng.random() < scheme.manner.piping else None
 
 
-def feet(rng: np.random.Generator, scheme: Scheme, x: Span, y: Span, lift: float, form: str) -> tuple[Piece, ...]:
+def feet(rng: np.random.Generator, scheme: Scheme, x: Interval, y: Interval, lift: float, form: str) -> tuple[Piece, ...]:
     """Return feet under a frame: the style's legs where there is room for them, else blocks."""
     kind = (
         draw_kind(rng, scheme, "plank cross sled hairpin pipe")
@@ -85,7 +85,7 @@ def feet(rng: np.random.Generator, scheme: Scheme, x: Span, y: Span, lift: float
     return pieces("feet", solids, leg_finish(scheme, kind))
 
 
-def _arms(form: str, w: float, y: Span, z: Span, arm: float, lift: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _arms(form: str, w: float, y: Interval, z: Interval, arm: float, lift: float, scheme: Scheme) -> tuple[Piece, ...]:
     """Return both arms; z from the frame's top (or the floor's lift) to the arm's top."""
     solids: list[Solid] = []
     soft = scheme.manner.soft
@@ -105,7 +105,7 @@ def _arms(form: str, w: float, y: Span, z: Span, arm: float, lift: float, scheme
     return pieces("arms", solids, scheme.soft)
 
 
-def _back(rng: np.random.Generator, form: str, x: Span, y: Span, z: Span, scheme: Scheme) -> tuple[Piece, ...]:
+def _back(rng: np.random.Generator, form: str, x: Interval, y: Interval, z: Interval, scheme: Scheme) -> tuple[Piece, ...]:
     """Return the back behind the cushions; a Chesterfield's is buttoned and rolled, a camel's back is arched."""
     low, h = z
     if form == "chesterfield":
@@ -125,7 +125,9 @@ def _back(rng: np.random.Generator, form: str, x: Span, y: Span, z: Span, scheme
     return pieces("back", cushion((x[0], x[1]), y, (low, h - 0.04), 0.04, 3), scheme.soft)
 
 
-def _cushions(rng: np.random.Generator, x: Span, y: Span, z: Span, h: float, seats: int, deep: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _cushions(
+    rng: np.random.Generator, x: Interval, y: Interval, z: Interval, h: float, seats: int, deep: float, scheme: Scheme
+) -> tuple[Piece, ...]:
     """Return seat and back cushions, one of each per seat (sometimes one long seat); y from the front to the back's face."""
     low, seat = z
     piping = _piping(rng, scheme)
@@ -145,7 +147,7 @@ def _cushions(rng: np.random.Generator, x: Span, y: Span, z: Span, h: float, sea
     return parts + pieces("back_cushions", lean(backs, seat + 0.024, slope), scheme.soft)
 
 
-def _pillows(rng: np.random.Generator, x: float, y: float, z: Span, scheme: Scheme) -> tuple[Piece, ...]:
+def _pillows(rng: np.random.Generator, x: float, y: float, z: Interval, scheme: Scheme) -> tuple[Piece, ...]:
     pillows = []
     for s in one_of(rng, ([-1, 1], [-1], [1])):
         size = min(float(rng.uniform(0.38, 0.46)), z[1] - z[0])

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-Interval = tuple[float, float]
+Interval = tuple[float, float]  # from, to
+Spot = tuple[float, float]  # two coordinates
 Face = tuple[int, ...]
 Vector = Sequence[float] | NDArray[np.float64]
 
@@ -303,10 +304,7 @@ def revolve(profile: Sequence[Interval], n: int = 20, centre: Interval = (0.0, 0
     return solids if squash == 1 else [s.scaled(np.array([1.0, squash, 1.0])) for s in solids]
 
 
-def shell(
-    outer: Sequence[NDArray[np.float64]],
-    inner: Sequence[NDArray[np.float64]],
-) -> list[Solid]:
+def shell(outer: Sequence[NDArray[np.float64]], inner: Sequence[NDArray[np.float64]]) -> list[Solid]:
     """Return the wall between two outlines, each given at its lower and its upper end (n, 3), as n convex staves."""
     n = len(outer[0])
     staves = []
@@ -318,14 +316,7 @@ def shell(
     return staves
 
 
-def ring(
-    outer: Interval,
-    inner: Interval,
-    z: Interval,
-    n: int = 16,
-    centre: Interval = (0.0, 0.0),
-    squash: float = 1.0,
-) -> list[Solid]:
+def ring(outer: Interval, inner: Interval, z: Interval, n: int = 16, centre: Interval = (0.0, 0.0), squash: float = 1.0) -> list[Solid]:
     """Return a round wall with radii (at the bottom, at the top) `outer` and `inner`, as n staves; `squash` scales y."""
     rims = [[_at(circle(r[k], n, centre, squash), z[k]) for k in (0, 1)] for r in (outer, inner)]
     return shell(rims[0], rims[1])

@@ -67,15 +67,7 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         )
         hoop = arc((0.0, 0.0), 0.3 * r, 0, 2 * math.pi, 14)[:-1]
         ring = tube(np.column_stack([hoop, np.full(14, 0.32 * seat)]), 0.009, 6, closed=True)
-        arms = [
-            rod(
-                polar(0.028, a, 0.32 * seat),
-                polar(0.3 * r - 0.009, a, 0.32 * seat),
-                0.007,
-                n=6,
-            )
-            for a in turns(3, math.pi / 2)
-        ]
+        arms = [rod(polar(0.028, a, 0.32 * seat), polar(0.3 * r - 0.009, a, 0.32 * seat), 0.007, n=6) for a in turns(3, math.pi / 2)]
         parts += pieces("foot_rest", ring + arms, metal)
     else:
         kind = draw_kind(rng, scheme, "plank cross sled block bun hairpin blade cabriole")
@@ -134,9 +126,7 @@ def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     finish = leg_finish(scheme, kind)
     parts = pieces("legs", legs(kind, half, h - thick - 0.035, 0.04), finish)
     parts += pieces(
-        "frame",
-        slab(rounded_rectangle(around(x - 0.008), around(y - 0.008), 0.02, 2), (h - thick - 0.035, h - thick), 0.004),
-        finish,
+        "frame", slab(rounded_rectangle(around(x - 0.008), around(y - 0.008), 0.02, 2), (h - thick - 0.035, h - thick), 0.004), finish
     )
     if form == "legs" and rng.random() < 0.35:
         return Shape(

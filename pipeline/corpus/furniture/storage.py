@@ -11,7 +11,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, Feet, case
 from pipeline.corpus.furniture.finishes import DARK_GLASS, LACQUERS, Finish, Scheme, pick, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, HandleStyle, PanelStyle
 from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import rod
+from pipeline.corpus.furniture.solids import Interval, rod
 
 
 def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> FrontStyle:
@@ -21,7 +21,7 @@ def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> F
     return FrontStyle(panel, handle, scheme.front, scheme.handle)
 
 
-def case_style(rng: np.random.Generator, scheme: Scheme, style: FrontStyle, feet: str, height: tuple[float, float]) -> Case:
+def case_style(rng: np.random.Generator, scheme: Scheme, style: FrontStyle, feet: str, height: Interval) -> Case:
     """Draw how a carcass is made."""
     kind: Feet = pick(rng, feet)  # type: ignore[assignment]
     low = {"plinth": 0.05, "none": 0.0}.get(kind)

@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import blades, curve, prism, tube
 from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, revolve, ring, slab, walls
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, revolve, ring, slab, walls
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
 BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue", "barn_red", "emerald", "greige", "blush", "black")
@@ -22,7 +22,7 @@ def glaze(rng: np.random.Generator) -> Finish:
     return Finish(f"glaze_{name}", shade(rng, LACQUERS[name], 0.06), 0.2, density=2200)
 
 
-def vessel(profile: list[tuple[float, float]], wall: float, floor: float, n: int) -> list[Solid]:
+def vessel(profile: list[Spot], wall: float, floor: float, n: int) -> list[Solid]:
     """Return an open vessel: a wall `wall` [m] thick along a profile of (radius, height), a floor `floor` [m] thick."""
     solids = [slab(circle(profile[0][0], n), (profile[0][1], profile[0][1] + floor))]
     start = [(profile[0][0], profile[0][1] + floor), *profile[1:]]
@@ -120,7 +120,7 @@ def binding(rng: np.random.Generator) -> Finish:
     return Finish(f"binding_{name}", shade(rng, LACQUERS[name], 0.12), 0.6, density=700)
 
 
-def flat_book(rng: np.random.Generator, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> tuple[Piece, ...]:
+def flat_book(rng: np.random.Generator, x: Interval, y: Interval, z: Interval) -> tuple[Piece, ...]:
     """Return a book that lies flat: two boards, a spine at the left, the block of paper set back between them."""
     t = min(0.003, 0.2 * (z[1] - z[0]))
     boards = [box(x, y, (z[0], z[0] + t)), box(x, y, (z[1] - t, z[1])), box((x[0], x[0] + t), y, (z[0] + t, z[1] - t))]

@@ -8,14 +8,13 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.shape import Piece, pieces
-from pipeline.corpus.furniture.solids import Solid, around, cushion, pillow, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.solids import Interval, Solid, around, cushion, pillow, rod, rounded_rectangle, slab
 
-Span = tuple[float, float]
 SEAM = 0.007  # height of a piping
 
 
 def seat_cushion(
-    x: Span, y: Span, z: Span, radius: float, cloth: Finish, piping: Finish | None = None, crown: float = 0.02
+    x: Interval, y: Interval, z: Interval, radius: float, cloth: Finish, piping: Finish | None = None, crown: float = 0.02
 ) -> tuple[Piece, ...]:
     """Return a seat cushion with a swelling top; with `piping` a cord of that finish runs around its upper edge."""
     crown = min(crown, 0.3 * (z[1] - z[0]))
@@ -30,7 +29,7 @@ def seat_cushion(
     return pieces("cushion", [lower, upper], cloth) + pieces("piping", cord, piping)
 
 
-def tufted_panel(x: Span, y: Span, z: Span, across: int, rows: int) -> list[Solid]:
+def tufted_panel(x: Interval, y: Interval, z: Interval, across: int, rows: int) -> list[Solid]:
     """Return an upright buttoned panel facing -y: a board behind a grid of small pads."""
     deep = y[1] - y[0]
     solids: list[Solid] = [cushion(x, (y[0] + 0.5 * deep, y[1]), z, 0.2 * deep, 1)]
@@ -41,7 +40,7 @@ def tufted_panel(x: Span, y: Span, z: Span, across: int, rows: int) -> list[Soli
     return solids
 
 
-def upright_pad(rng: np.random.Generator, scheme: Scheme, x: Span, y: Span, z: Span) -> list[Solid]:
+def upright_pad(rng: np.random.Generator, scheme: Scheme, x: Interval, y: Interval, z: Interval) -> list[Solid]:
     """Return an upright pad facing -y: plain, in channels, or buttoned, as the style likes."""
     wide, tall = x[1] - x[0], z[1] - z[0]
     u = rng.random()
@@ -53,14 +52,14 @@ def upright_pad(rng: np.random.Generator, scheme: Scheme, x: Span, y: Span, z: S
     return [cushion(x, y, z, radius, 3)]
 
 
-def channels(x: Span, y: Span, z: Span, count: int) -> list[Solid]:
+def channels(x: Interval, y: Interval, z: Interval, count: int) -> list[Solid]:
     """Return an upright pad sewn in upright channels."""
     xs = np.linspace(x[0], x[1], count + 1)
     deep = y[1] - y[0]
     return [cushion((a + 0.0005, b - 0.0005), y, z, 0.42 * min(deep, float(b - a)), 2) for a, b in itertools.pairwise(xs)]
 
 
-def bolster(x: Span, y: float, z: float, radius: float) -> Solid:
+def bolster(x: Interval, y: float, z: float, radius: float) -> Solid:
     """Return a roll along x."""
     return rod((x[0], y, z), (x[1], y, z), radius, n=14)
 
@@ -72,7 +71,7 @@ def throw_pillow(at: tuple[float, float, float], size: float, tilt: float, yaw: 
     return solid.moved((at[0], at[1], at[2] - float(solid.vertices[:, 2].min())))
 
 
-def duvet(x: Span, y: Span, z: float, thick: float, drop: float, cloth: Finish, *, foot: bool = True) -> tuple[Piece, ...]:
+def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: Finish, *, foot: bool = True) -> tuple[Piece, ...]:
     """Return a cover that lies on a mattress at `z` and hangs over its sides (and foot) by `drop`; x, y are the mattress's."""
     side = 0.55 * thick
     solids = [cushion((x[0] - side, x[1] + side), (y[0] - side * foot, y[1]), (z, z + thick), 0.45 * thick, 3, 0.25 * thick)]

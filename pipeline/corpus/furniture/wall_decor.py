@@ -10,7 +10,7 @@ from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Finish, Pattern, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.panels import Rect, frame
 from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, revolve, ring, rod, slab, standing
+from pipeline.corpus.furniture.solids import Interval, Solid, around, box, circle, revolve, ring, rod, slab, standing
 from pipeline.style import Color
 
 INKS: tuple[tuple[Color, Color], ...] = (
@@ -23,7 +23,7 @@ INKS: tuple[tuple[Color, Color], ...] = (
 )
 
 
-def frame_boards(w: float, h: float, wide: float, y: tuple[float, float], bevel: float = 0.002) -> list[Solid]:
+def frame_boards(w: float, h: float, wide: float, y: Interval, bevel: float = 0.002) -> list[Solid]:
     """Return four boards around a rectangle `w` x `h` whose lower edge is at z = 0."""
     x = w / 2
     return frame(Rect((-x, x), (0.0, h), y[0]), Rect(around(x - wide), (wide, h - wide), y[0]), y, bevel)
