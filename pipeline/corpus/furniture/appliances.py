@@ -22,8 +22,8 @@ from pipeline.corpus.furniture.finishes import (
     pick,
 )
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import Interval, around, box, circle, revolve, ring, shell, slab, standing, strips
+from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.solids import Interval, around, box, circle, edges, inset, revolve, ring, shell, slab, standing, strips
 
 FRONTS = (ENAMEL, STEEL, GRAPHITE)
 
@@ -104,10 +104,10 @@ def oven(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     return Shape(racks, shape.movers + tuple(movers))
 
 
-def _burners(w: float, d: float, z: float) -> tuple[Piece, ...]:
+def _burners(w: float, d: float, z: float) -> Pieces:
     """Return four burners under grates of bars, on a hob at height `z` [m]."""
     iron = Finish("cast_iron", (0.025, 0.025, 0.027), 0.6, density=3000)
-    parts: tuple[Piece, ...] = ()
+    parts: Pieces = ()
     for k, (sx, sy, r) in enumerate(((-1, -1, 0.035), (1, -1, 0.045), (-1, 1, 0.045), (1, 1, 0.028))):
         x, y = sx * 0.22 * w, 0.03 + sy * 0.19 * d
         cap = revolve([(1.2 * r, z), (1.2 * r, z + 0.006), (r, z + 0.008), (r, z + 0.014)], 14, (x, y))
@@ -152,13 +152,13 @@ def dishwasher(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
 def _rack(name: str, x: Interval, y: Interval, z: float, high: float, door: str) -> Mover:
     """Return a basket of wire that is drawn out through the open door."""
     wires = [box((x[0], x[1]), (a, a + 0.008), (z, z + 0.008)) for a in np.linspace(y[0], y[1] - 0.008, 8).tolist()]
-    wires += [box((a, a + 0.008), (y[0] + 0.009, y[1] - 0.009), (z + 0.008, z + 0.014)) for a in (x[0], (x[0] + x[1]) / 2, x[1] - 0.008)]
+    wires += [box((a, a + 0.008), inset(y, 0.009), (z + 0.008, z + 0.014)) for a in (x[0], (x[0] + x[1]) / 2, x[1] - 0.008)]
     parts = pieces("rack", wires, STEEL, group="floor")
     rims = (
         ("left", (x[0], x[0] + 0.008), y),
         ("right", (x[1] - 0.008, x[1]), y),
-        ("front", (x[0] + 0.009, x[1] - 0.009), (y[0], y[0] + 0.008)),
-        ("back", (x[0] + 0.009, x[1] - 0.009), (y[1] - 0.008, y[1])),
+        ("front", inset(x, 0.009), (y[0], y[0] + 0.008)),
+        ("back", inset(x, 0.009), (y[1] - 0.008, y[1])),
     )
     for side, span, depth in rims:
         rails = [box(span, depth, (at, at + 0.007)) for at in (z + 0.05, z + high - 0.007)]
@@ -243,15 +243,15 @@ def _top_loader(size: Size, outside: Finish) -> Shape:
     w, d, h = size
     x, y, t = (-w / 2, w / 2), (-d / 2, d / 2), 0.018
     panel, deck = 0.12, h - 0.16
-    walls = [box((x[0], x[0] + t), y, (0.015, deck), 0.004), box((x[1] - t, x[1]), y, (0.015, deck), 0.004)]
-    walls += [box((x[0] + t, x[1] - t), (a, a + t), (0.03, deck), 0.002) for a in (y[0], y[1] - t)]
-    base = pieces("walls", walls, outside) + pieces("bottom", box((x[0] + t, x[1] - t), (y[0] + 0.02, y[1]), (0.015, 0.03)), outside)
+    walls = [box(span, y, (0.015, deck), 0.004) for span in edges(x, t)]
+    walls += [box(inset(x, t), (a, a + t), (0.03, deck), 0.002) for a in (y[0], y[1] - t)]
+    base = pieces("walls", walls, outside) + pieces("bottom", box(inset(x, t), (y[0] + 0.02, y[1]), (0.015, 0.03)), outside)
     base += pieces(
         "feet", [revolve([(0.02, 0.0), (0.02, 0.015)], 10, (sx * 0.4 * w, sy * 0.4 * d))[0] for sx in (-1, 1) for sy in (-1, 1)], PLASTIC
     )
     back = y[1] - panel
     base += pieces("console", box(x, (back + 0.004, y[1]), (deck, h), 0.008), outside)
-    hole_x, hole_y = (x[0] + 0.07, x[1] - 0.07), (y[0] + 0.07, back - 0.09)
+    hole_x, hole_y = inset(x, 0.07), (y[0] + 0.07, back - 0.09)
     base += pieces("deck", strips(x, (y[0], back), hole_x, hole_y, (deck, deck + 0.02), 0.003), outside)
     r = 0.5 * min(hole_x[1] - hole_x[0], hole_y[1] - hole_y[0])
     middle = (0.0, (hole_y[0] + hole_y[1]) / 2)
@@ -259,7 +259,7 @@ def _top_loader(size: Size, outside: Finish) -> Shape:
     base += pieces("drum_end", slab(circle(r, 24, middle), (0.185, 0.2)), STEEL)
     z = deck + 0.022
     cover_y = (y[0] + 0.02, back - 0.042)
-    lid_parts = pieces("lid", box((x[0] + 0.02, x[1] - 0.02), cover_y, (z, z + 0.018), 0.004), outside, group="lid")
+    lid_parts = pieces("lid", box(inset(x, 0.02), cover_y, (z, z + 0.018), 0.004), outside, group="lid")
     pane = box((hole_x[0], hole_x[1]), (hole_y[0], hole_y[1]), (z + 0.018, z + 0.0205), 0.001)
     lid_parts += pieces("lid_glass", pane, DARK_GLASS, group="lid")
     lid_parts += pieces("lid_grip", box((-0.06, 0.06), (y[0], cover_y[0]), (z + 0.004, z + 0.014), 0.002), PLASTIC, "line_fixed_handle")
@@ -271,19 +271,17 @@ def _top_loader(size: Size, outside: Finish) -> Shape:
     return Shape(base, tuple(movers))
 
 
-def _cabinet(x: Interval, y: Interval, h: float, t: float, finish: Finish) -> tuple[Piece, ...]:
+def _cabinet(x: Interval, y: Interval, h: float, t: float, finish: Finish) -> Pieces:
     """Return the housing without its front: sides, top, bottom, back and four feet."""
     parts = pieces("top", box(x, y, (h - 0.03, h), 0.004), finish)
     parts += pieces(
         "sides",
-        [box((x[0], x[0] + t), (y[0] + t, y[1]), (0.012, h - 0.03)), box((x[1] - t, x[1]), (y[0] + t, y[1]), (0.012, h - 0.03))],
+        [box(span, (y[0] + t, y[1]), (0.012, h - 0.03)) for span in edges(x, t)],
         finish,
     )
-    parts += pieces("bottom", box((x[0] + t, x[1] - t), (y[0] + 0.03, y[1]), (0.012, 0.03)), finish)
-    parts += pieces("back", box((x[0] + t, x[1] - t), (y[1] - 0.01, y[1]), (0.03, h - 0.03)), finish)
-    feet = [
-        revolve([(0.02, 0.0), (0.02, 0.012)], 10, (px, py))[0] for px in (x[0] + 0.06, x[1] - 0.06) for py in (y[0] + 0.06, y[1] - 0.06)
-    ]
+    parts += pieces("bottom", box(inset(x, t), (y[0] + 0.03, y[1]), (0.012, 0.03)), finish)
+    parts += pieces("back", box(inset(x, t), (y[1] - 0.01, y[1]), (0.03, h - 0.03)), finish)
+    feet = [revolve([(0.02, 0.0), (0.02, 0.012)], 10, (px, py))[0] for px in inset(x, 0.06) for py in inset(y, 0.06)]
     return parts + pieces("feet", feet, PLASTIC)
 
 
@@ -303,7 +301,7 @@ def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
     glass = standing(revolve([(r - 0.055, 0.006), (r - 0.055, 0.02), (0.6 * r, 0.032)], 24), (0, face, zc))
     grip = box((r - 0.045, r - 0.012), (face - 0.043, face - 0.03), around(0.05, zc), 0.003)
     rim_finish = Finish("door_rim", (0.3, 0.3, 0.31), 0.3, 0.5, density=1500)
-    parts: tuple[Piece, ...] = pieces("door_rim", rim, rim_finish, group="door") + pieces(
+    parts: Pieces = pieces("door_rim", rim, rim_finish, group="door") + pieces(
         "door_glass", glass, replace(DARK_GLASS, opacity=0.45, name="door_glass"), group="door"
     )
     parts += pieces("handle", grip, finish if finish is not ENAMEL else PLASTIC_WHITE, "line_fixed_handle")
@@ -313,7 +311,7 @@ def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
 def _detergent(x: Interval, z: Interval, face: float, t: float, finish: Finish) -> Mover:
     """Return the detergent drawer: a small box behind its front, with a grip."""
     rect = Rect(x, z, face)
-    solids = tray((x[0] + 0.006, x[1] - 0.006), (face + t, face + 0.2), (z[0] + 0.012, z[1] - 0.012), 0.008)
+    solids = tray(inset(x, 0.006), (face + t, face + 0.2), inset(z, 0.012), 0.008)
     parts = pieces("front", box(x, (face, face + t), z, 0.003), finish) + pieces("drawer_box", solids, PLASTIC_WHITE)
     middle = (x[0] + x[1]) / 2
     parts += pieces(

@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import lean, prism
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
-from pipeline.corpus.furniture.shape import Piece, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, around, beam, box, rod
 from pipeline.corpus.furniture.upholstery import upright_pad
 
@@ -44,12 +44,12 @@ def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
     return solids
 
 
-def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> tuple[Piece, ...]:
+def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> Pieces:
     """Return a back of one kind: slat, ladder, panel, splat, spindle, cane, cross, pad."""
     t = frame.thick
     soft: list[Solid] = []
     wood: list[Solid] = []
-    other: tuple[Piece, ...] = ()
+    other: Pieces = ()
     if kind == "pad":
         soft = upright_pad(
             rng, scheme, around(frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * (frame.high - frame.low), frame.high)

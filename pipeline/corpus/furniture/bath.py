@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import split_bent_quads
 from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
 from pipeline.corpus.furniture.fronts import lid, top_button
-from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, Size, pieces, staves
 from pipeline.corpus.furniture.solids import (
     Interval,
     Solid,
@@ -160,7 +160,7 @@ def shower(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         ),
         *(box(around(w / 2 - 0.04), (-d / 2, -d / 2 + 0.04) if s < 0 else (d / 2 - 0.04, d / 2), (tray - 0.02, tray)) for s in (-1, 1)),
     ]
-    base: tuple[Piece, ...] = pieces("tray", rimmed, CERAMIC)
+    base: Pieces = pieces("tray", rimmed, CERAMIC)
     side = -1 if rng.random() < 0.5 else 1
     gx = around(0.004, side * (w / 2 - 0.012))
     base += pieces("glass_side", box(gx, (-d / 2 + 0.012, d / 2 - 0.002), (tray, h)), GLASS)

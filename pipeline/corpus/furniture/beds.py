@@ -10,8 +10,8 @@ import numpy as np
 from pipeline.corpus.furniture.bent import tube
 from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme, cane
 from pipeline.corpus.furniture.legs import leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, cushion, pillow, rod
+from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Interval, Solid, around, box, cushion, edges, inset, pillow, rod
 from pipeline.corpus.furniture.upholstery import channels, duvet, throw_pillow, tufted_panel
 
 SOFT = frozenset({"upholstered", "tufted", "wing"})
@@ -34,20 +34,17 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     rail = (y[0] + foot, y[1] - head)
     cloth = scheme.soft if soft else scheme.handle if form == "metal" else scheme.body
     if soft:
-        frame: list[Solid] = [
-            cushion((x[0], x[0] + side), rail, (lift, rail_top), 0.02, 2),
-            cushion((x[1] - side, x[1]), rail, (lift, rail_top), 0.02, 2),
-        ]
-        frame.append(cushion((x[0] + side, x[1] - side), (rail[0], rail[0] + side), (lift, rail_top), 0.02, 2))
+        frame: list[Solid] = [cushion(span, rail, (lift, rail_top), 0.02, 2) for span in edges(x, side)]
+        frame.append(cushion(inset(x, side), (rail[0], rail[0] + side), (lift, rail_top), 0.02, 2))
     else:
         frame = [
             box((x[0] + 0.008, x[0] + side), rail, (lift, rail_top), 0.004),
             box((x[1] - side, x[1] - 0.008), rail, (lift, rail_top), 0.004),
         ]
         if not foot:
-            frame.append(box((x[0] + side, x[1] - side), (rail[0], rail[0] + side), (lift, rail_top), 0.004))
+            frame.append(box(inset(x, side), (rail[0], rail[0] + side), (lift, rail_top), 0.004))
     low = rail_top - 0.03
-    inner_x, inner_y = (x[0] + side, x[1] - side), (rail[0] + (0.0 if foot else side), rail[1])
+    inner_x, inner_y = inset(x, side), (rail[0] + (0.0 if foot else side), rail[1])
     frame.append(box(inner_x, inner_y, (low - 0.03, low)))
     parts += pieces("frame", frame, cloth)
     if foot:
@@ -59,14 +56,12 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     return Shape(parts + bedding(rng, inner_x, inner_y, low, top, scheme, h - top))
 
 
-def bedding(
-    rng: np.random.Generator, x: Interval, y: Interval, low: float, top: float, scheme: Scheme, room: float = 1.0
-) -> tuple[Piece, ...]:
+def bedding(rng: np.random.Generator, x: Interval, y: Interval, low: float, top: float, scheme: Scheme, room: float = 1.0) -> Pieces:
     """Return a mattress from `low` to `top`, a duvet turned down over it, pillows at the head, often cushions and a throw.
 
     There are cushions only where there is `room` above for them.
     """
-    mx, my = (x[0] + 0.014, x[1] - 0.014), (y[0] + 0.014, y[1] - 0.006)
+    mx, my = inset(x, 0.014), (y[0] + 0.014, y[1] - 0.006)
     parts = pieces("mattress", cushion(mx, my, (low, top), 0.045, 3), MATTRESS)
     wide, long = mx[1] - mx[0], my[1] - my[0]
     head = min(0.62, 0.34 * long)
@@ -99,7 +94,7 @@ def bedding(
     return parts
 
 
-def _head(rng: np.random.Generator, form: str, x: Interval, y: Interval, lift: float, h: float, scheme: Scheme) -> tuple[Piece, ...]:  # noqa: PLR0911 - one return per form
+def _head(rng: np.random.Generator, form: str, x: Interval, y: Interval, lift: float, h: float, scheme: Scheme) -> Pieces:  # noqa: PLR0911 - one return per form
     """Return a headboard over `x`, `y` up to `h`."""
     w = x[1] - x[0]
     wood = scheme.timber if form == "slatted" else scheme.body
@@ -117,30 +112,30 @@ def _head(rng: np.random.Generator, form: str, x: Interval, y: Interval, lift: f
     if form == "tufted":
         return pieces("headboard", tufted_panel(x, y, (lift, h), max(4, round(w / 0.26)), max(2, round((h - lift) / 0.26))), scheme.soft)
     if form == "wing":
-        parts = pieces("headboard", cushion((x[0] + 0.06, x[1] - 0.06), y, (lift, h), 0.04, 3), scheme.soft)
+        parts = pieces("headboard", cushion(inset(x, 0.06), y, (lift, h), 0.04, 3), scheme.soft)
         wings = [cushion((a, a + 0.058), (y[0] - 0.16, y[1]), (lift + 0.3, h - 0.02), 0.026, 2) for a in (x[0], x[1] - 0.058)]
         return parts + pieces("wings", wings, scheme.soft)
     if form == "metal":
         return pieces("headboard", _hoop(x, (y[0] + y[1]) / 2, h, scheme), scheme.handle)
     post = 0.05
     parts = pieces("posts", [box((a, a + post), y, (0, h), 0.006) for a in (x[0], x[1] - post)], wood)
-    inner = (x[0] + post, x[1] - post)
+    inner = inset(x, post)
     if form == "slatted":
         count = max(5, round(w / 0.11))
         xs = np.linspace(inner[0] + 0.05, inner[1] - 0.05, count)
-        rails = [box(inner, (y[0] + 0.01, y[1] - 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (h - 0.09, h - 0.005))]
+        rails = [box(inner, inset(y, 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (h - 0.09, h - 0.005))]
         return parts + pieces(
-            "headboard", rails + [box(around(0.014, a), (y[0] + 0.018, y[1] - 0.018), (lift + 0.21, h - 0.09), 0.002) for a in xs], wood
+            "headboard", rails + [box(around(0.014, a), inset(y, 0.018), (lift + 0.21, h - 0.09), 0.002) for a in xs], wood
         )
     weave = rng.random() < scheme.manner.cane
-    field = (inner[0] + 0.07, inner[1] - 0.07)
+    field = inset(inner, 0.07)
     deep = (y[0] + 0.012, y[1] - 0.008)
     boards = [box((inner[0], field[0]), deep, (lift, h - 0.02), 0.003), box((field[1], inner[1]), deep, (lift, h - 0.02), 0.003)]
     boards += [box(field, deep, z, 0.003) for z in ((lift, lift + 0.3), (h - 0.1, h - 0.02))]
     panel = box(field, (deep[0] + 0.012, deep[1] - 0.006), (lift + 0.3, h - 0.1))
     parts += pieces("headboard", boards, wood) + pieces("panel", panel, cane(rng) if weave else scheme.front)
     if form == "panel":
-        parts += pieces("cap", box((x[0] + post, x[1] - post), y, (h - 0.02, h), 0.005), wood)
+        parts += pieces("cap", box(inset(x, post), y, (h - 0.02, h), 0.005), wood)
     return parts
 
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.fronts import GAP, FrontStyle, Rect, Side, door, drawer, reach, sliding_door
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, beam, box, rod
+from pipeline.corpus.furniture.shape import Mover, Piece, Pieces, Shape, pieces
+from pipeline.corpus.furniture.solids import Interval, Solid, around, beam, box, inset, rod
 
 Feet = Literal["plinth", "tapered", "square", "sled", "none", "hairpin"]
 CellKind = Literal["drawer", "left", "right", "pair", "open", "flap", "lift", "blank", "slide"]
@@ -80,7 +80,7 @@ def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve
     base += pieces("top", box(around(w / 2), (face - how.overhang - how.nose, d / 2), (z[1], h), 0.003), how.top or how.body)
     base += pieces("side_left", box((x[0], x[0] + b), y, z, 0.0015), how.body)
     base += pieces("side_right", box((x[1] - b, x[1]), y, z, 0.0015), how.body)
-    inner = (x[0] + b, x[1] - b)
+    inner = inset(x, b)
     base += pieces("bottom", box(inner, y, (z[0], z[0] + b)), how.body)
     base += pieces("back", box(inner, (y[1] - BACK, y[1]), (z[0] + b, z[1])), how.body)
     movers: list[Mover] = []
@@ -168,7 +168,7 @@ def _inner(
     name: str, count: int, x: Interval, y: Interval, bottom: float, how: Case, doors: tuple[str, ...]
 ) -> tuple[list[Piece], list[Mover]]:
     """Return drawers behind doors, under a board of their own: narrower than the cell, so that they pass the open doors."""
-    inside = (x[0] + 0.022, x[1] - 0.022)
+    inside = inset(x, 0.022)
     face = y[0] + 0.03
     style = replace(how.style, panel="slab", handle="none", finish=how.body, thickness=0.016)
     drawers = []
@@ -212,15 +212,15 @@ def _sliding(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect:
     return base, movers
 
 
-def feet(kind: Feet, x: Interval, y: Interval, height: float, finish: Finish) -> tuple[Piece, ...]:
+def feet(kind: Feet, x: Interval, y: Interval, height: float, finish: Finish) -> Pieces:
     """Return what a piece stands on, under the rectangle `x`, `y`, from the floor to `height` [m]."""
     if height <= 0 or kind == "none":
         return ()
-    inset = min(0.05, 0.12 * (x[1] - x[0]))
-    corners = [(cx, cy) for cx in (x[0] + inset, x[1] - inset) for cy in (y[0] + inset, y[1] - inset)]
+    margin = min(0.05, 0.12 * (x[1] - x[0]))
+    corners = [(cx, cy) for cx in inset(x, margin) for cy in inset(y, margin)]
     solids: list[Solid] = []
     if kind == "plinth":
-        return pieces("plinth", box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.03, y[1] - 0.005), (0, height)), finish)
+        return pieces("plinth", box(inset(x, 0.02), (y[0] + 0.03, y[1] - 0.005), (0, height)), finish)
     if kind == "tapered":
         spread = 0.022 if height > 0.1 else 0.0
         for cx, cy in corners:
@@ -230,17 +230,17 @@ def feet(kind: Feet, x: Interval, y: Interval, height: float, finish: Finish) ->
         side = 0.018 if height > 0.08 else 0.025
         solids = [beam((cx, cy, 0), (cx, cy, height), 2 * side, 2 * side, 0.75) for cx, cy in corners]
     elif kind == "hairpin":
-        parts: tuple[Piece, ...] = ()
+        parts: Pieces = ()
         for k, (cx, cy) in enumerate(corners):
             pair = [rod((cx + s * 0.003, cy, 0), (cx + s * 0.03, cy, height), 0.006, 0.006, 6) for s in (-1, 1)]
             parts += pieces("feet", pair, finish, group=f"foot_{k}")
         return parts
     else:  # sled: two closed frames of square tube
         t = 0.012
-        for cx in (x[0] + inset, x[1] - inset):
-            span = (y[0] + inset / 2, y[1] - inset / 2)
+        for cx in inset(x, margin):
+            span = inset(y, margin / 2)
             solids.append(box(around(t, cx), span, (0, 2 * t), 0.002))
-            solids += [box(around(t, cx), around(t, cy), (2 * t, height), 0.002) for cy in (span[0] + t, span[1] - t)]
+            solids += [box(around(t, cx), around(t, cy), (2 * t, height), 0.002) for cy in inset(span, t)]
     if x[1] - x[0] > 1.6 and kind in ("tapered", "square"):  # long pieces stand on six
-        solids += [rod((0, cy, 0), (0, cy, height), 0.014, 0.02, 10) for cy in (y[0] + inset, y[1] - inset)]
+        solids += [rod((0, cy, 0), (0, cy, height), 0.014, 0.02, 10) for cy in inset(y, margin)]
     return pieces("feet", solids, finish)

@@ -11,7 +11,7 @@ from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Scheme
 from pipeline.corpus.furniture.lamps import turned_along
 from pipeline.corpus.furniture.shades import bulb, cord, rose, shade, shade_word
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import around, box, circle, cushion, polar, revolve, ring, rod, slab
 
 CRYSTAL = replace(GLOW, name="crystal", color=(0.82, 0.86, 0.88), roughness=0.05, opacity=0.55, density=2500)
@@ -46,7 +46,7 @@ def pendant_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return Shape(parts + pieces("cord", cord((0, 0), (tall - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal))
 
 
-def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     w, d, h = size
     metal = scheme.handle
     parts = pieces("rose", box(around(0.3 * w), (-0.035, 0.035), (h - 0.024, h), 0.004), metal)
@@ -72,7 +72,7 @@ def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece
     return parts
 
 
-def _cluster(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _cluster(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     w, d, h = size
     metal = scheme.handle
     count = int(rng.integers(3, 7))
@@ -88,7 +88,7 @@ def _cluster(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
     return parts
 
 
-def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Arms that swing out and up from a turned stem, each with a small shade or a candle, drops of glass below."""
     w, _, h = size
     metal = scheme.handle
@@ -116,7 +116,7 @@ def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[P
     return parts + pieces("cord", cord((0, 0), (body - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal)
 
 
-def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Rods in all directions from a ball, a lit globe on each."""
     w, d, h = size
     metal = scheme.handle
@@ -181,7 +181,7 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return Shape(parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
 
 
-def _rain(form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _rain(form: str, size: Size, scheme: Scheme) -> Pieces:
     """Build rods in tiers that hang from a plate: of crystal, or lit."""
     w, d, h = size
     squash = np.array([1.0, d / w, 1.0])
@@ -203,7 +203,7 @@ def _rain(form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
     return parts
 
 
-def _lattice(size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _lattice(size: Size, scheme: Scheme) -> Pieces:
     """Build a lit box in a wooden frame with a grid before it."""
     w, d, h = size
     t = 0.03

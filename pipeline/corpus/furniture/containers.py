@@ -9,7 +9,20 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.fronts import Rect, lid
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, circle, revolve, ring, slab, stack, walls
+from pipeline.corpus.furniture.solids import (
+    Interval,
+    Solid,
+    around,
+    box,
+    circle,
+    edges,
+    inset,
+    revolve,
+    ring,
+    slab,
+    stack,
+    walls,
+)
 
 CARDBOARD = Finish("cardboard", (0.40, 0.26, 0.14), 0.9, pattern="speckle", density=200)
 
@@ -58,9 +71,9 @@ def _swing_bin(x: Interval, y: Interval, h: float, finish: Finish, hood: Finish)
     """Return a bin whose hood has a flap at its front: it hangs from its upper edge and is pulled outwards."""
     t, low = 0.009, 0.68 * h
     base = pieces("body", tray_walls(x, y, (0.0, low), t, 0.002), finish)
-    over = [box((x[0], x[0] + t), y, (low + 0.001, h)), box((x[1] - t, x[1]), y, (low + 0.001, h))]
-    over.append(box((x[0] + t, x[1] - t), y, (h - t, h), 0.002))
-    over.append(box((x[0] + t, x[1] - t), (y[1] - t, y[1]), (low + 0.001, h - t)))
+    over = [box(span, y, (low + 0.001, h)) for span in edges(x, t)]
+    over.append(box(inset(x, t), y, (h - t, h), 0.002))
+    over.append(box(inset(x, t), (y[1] - t, y[1]), (low + 0.001, h - t)))
     span = Rect((x[0] + t + 0.003, x[1] - t - 0.003), (low + 0.004, h - t - 0.003), y[0] + 0.001)
     flap = pieces("flap", box(span.x, (span.y, span.y + t), span.z, 0.002), hood, group="flap")
     sign = box((-0.05, 0.05), (span.y - 0.001, span.y), around(0.012, span.middle[1]))
@@ -90,8 +103,8 @@ def storage_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     low = h - cover
     base = pieces("walls", tray_walls(x, (front, y[1]), (0.0, low), t, 0.001), finish)
     lid_parts = pieces("lid", box(x, (front, y[1]), (h - t, h), 0.002), finish)
-    rim = [box((x[0], x[0] + t), (front, y[1]), (low + 0.002, h - t)), box((x[1] - t, x[1]), (front, y[1]), (low + 0.002, h - t))]
-    rim += [box((x[0] + t, x[1] - t), (a, a + t), (low + 0.002, h - t)) for a in (front, y[1] - t)]
+    rim = [box(span, (front, y[1]), (low + 0.002, h - t)) for span in edges(x, t)]
+    rim += [box(inset(x, t), (a, a + t), (low + 0.002, h - t)) for a in (front, y[1] - t)]
     lid_parts += pieces("lid_rim", rim, finish)
     lid_parts += pieces("tab", box((-0.025, 0.025), (y[0], front), (low - 0.012, low + 0.02), 0.002), scheme.handle, "line_fixed_handle")
     corners = [box(around(0.012, sx * (w / 2 - 0.012)), (front - 0.001, front), (0.0, 0.03)) for sx in (-1, 1)]

@@ -9,8 +9,8 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, STEEL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid
-from pipeline.corpus.furniture.shape import UP, Mover, Piece, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, cushion, revolve, ring, rod, slab
+from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, cushion, edges, inset, revolve, ring, rod, slab
 
 WIRE = 0.004  # radius of a bail [m]
 COFFEE = Finish("coffee", (0.03, 0.012, 0.006), 0.2, density=1000)
@@ -37,12 +37,12 @@ def toaster(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     for b in bars if slots == 2 else [(depth - slot) / 2]:
         cuts += [y[0] + float(b), y[0] + float(b) + slot]
     cuts.append(y[1])
-    base: tuple[Piece, ...] = ()
+    base: Pieces = ()
     for k in range(0, len(cuts), 2):
-        base += pieces("wall", box((x[0] + end, x[1] - end), (cuts[k], cuts[k + 1]), z, 0.004), finish)
-    base += pieces("ends", [cushion((x[0], x[0] + end), y, z, 0.02), cushion((x[1] - end, x[1]), y, z, 0.02)], finish)
-    base += pieces("skids", [box((a, a + 0.012), (y[0] + 0.004, y[1] - 0.004), (0.0, 0.03)) for a in (x[0] + 0.012, x[1] - 0.024)], PLASTIC)
-    base += pieces("skirt", box((x[0] + 0.024, x[1] - 0.024), (y[0] + 0.004, y[0] + 0.014), (0.004, 0.03)), PLASTIC)
+        base += pieces("wall", box(inset(x, end), (cuts[k], cuts[k + 1]), z, 0.004), finish)
+    base += pieces("ends", [cushion(span, y, z, 0.02) for span in edges(x, end)], finish)
+    base += pieces("skids", [box((a, a + 0.012), inset(y, 0.004), (0.0, 0.03)) for a in (x[0] + 0.012, x[1] - 0.024)], PLASTIC)
+    base += pieces("skirt", box(inset(x, 0.024), (y[0] + 0.004, y[0] + 0.014), (0.004, 0.03)), PLASTIC)
     base += pieces("guide", box(around(0.003, 0.30 * w), (y[0] - 0.001, y[0]), (0.3 * h, 0.82 * h)), PLASTIC, group="guide")
     grip = box(around(0.022, 0.30 * w), (y[0] - stand, y[0] - 0.002), (0.72 * h, 0.72 * h + 0.014), 0.003)
     at = (0.30 * w, y[0] - 0.5 * stand, 0.72 * h)
@@ -50,7 +50,7 @@ def toaster(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     movers.append(knob("browning", (-0.30 * w, y[0], 0.34 * h), 0.017, STEEL if finish is not STEEL else PLASTIC))
     if slots == 2:
         movers.append(button("stop", around(0.04 * w), (0.31 * h, 0.37 * h), y[0], PLASTIC))
-    tray = box((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.02, y[1] - 0.02), (0.008, 0.018))
+    tray = box(inset(x, 0.03), inset(y, 0.02), (0.008, 0.018))
     lip = box((-0.06, 0.06), (y[1] - 0.0195, y[1]), (0.008, 0.02))  # drawn out at the back
     crumbs = pieces("crumb_tray", [tray], STEEL) + pieces("crumb_lip", lip, PLASTIC)
     back: tuple[float, float, float] = (0.0, 1.0, 0.0)
@@ -69,31 +69,30 @@ def coffee_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     back = y[0] + 0.6 * (y[1] - y[0])
     foot, head, t = 0.17 * h, 0.70 * h, 0.012
     lid_z = h - 0.035
-    inner = (x[0] + t, x[1] - t)
-    base = pieces("foot", [box((x[0], x[0] + t), y, (0, foot), 0.002), box((x[1] - t, x[1]), y, (0, foot), 0.002)], trim)
+    inner = inset(x, t)
+    base = pieces("foot", [box(span, y, (0, foot), 0.002) for span in edges(x, t)], trim)
     base += pieces("floor", box(inner, y, (0, 0.01)), trim) + pieces("foot_back", box(inner, (back, y[1]), (0.01, foot)), trim)
     base += pieces("column", box(x, (back, y[1]), (foot, head), 0.006), finish)
     base += pieces("head", box(x, (y[0] + 0.01, y[1]), (head, lid_z - 0.003), 0.008), finish)
     grate = [
-        box((inner[0] + 0.004, inner[1] - 0.004), (a, a + 0.007), (foot - 0.014, foot - 0.006))
-        for a in np.linspace(y[0] + 0.03, back - 0.014, 7).tolist()
+        box(inset(inner, 0.004), (a, a + 0.007), (foot - 0.014, foot - 0.006)) for a in np.linspace(y[0] + 0.03, back - 0.014, 7).tolist()
     ]
     front = y[0] + 0.01  # the plane of dials and buttons
     style = FrontStyle("slab", "edge", trim, STEEL, thickness=0.01)
     tray = drawer(
         "drip_tray",
-        Rect((inner[0] + 0.002, inner[1] - 0.002), (0.012, foot - 0.003), y[0]),
+        Rect(inset(inner, 0.002), (0.012, foot - 0.003), y[0]),
         style,
         (inner, (0.01, foot - 0.014), back),
         PLASTIC,
     )
     movers = [tray]
-    cover = pieces("tank_lid", box((x[0] + 0.004, x[1] - 0.004), (back - 0.02, y[1] - 0.002), (lid_z, h - 0.004), 0.003), trim, group="lid")
+    cover = pieces("tank_lid", box(inset(x, 0.004), (back - 0.02, y[1] - 0.002), (lid_z, h - 0.004), 0.003), trim, group="lid")
     cover += pieces("tank_rim", box((-0.02, 0.02), (back - 0.012, back), (h - 0.004, h)), trim, group="lid")
     if form != "capsule":
         movers.append(lid("tank", cover, (0.0, y[1] - 0.002, lid_z), math.radians(80)))
     else:
-        base += pieces("cap", box((x[0] + 0.004, x[1] - 0.004), (back, y[1] - 0.002), (lid_z - 0.003, lid_z + 0.012), 0.003), trim)
+        base += pieces("cap", box(inset(x, 0.004), (back, y[1] - 0.002), (lid_z - 0.003, lid_z + 0.012), 0.003), trim)
         movers.append(_capsule_lever(w, (front, back - 0.03), lid_z, h))
     z = head + 0.45 * (lid_z - head)
     base += pieces("display", box(around(0.14 * w), (front - 0.0015, front), (z - 0.012, z + 0.014)), DARK_GLASS, group="display")
@@ -122,7 +121,7 @@ def _capsule_lever(w: float, y: Interval, z: float, h: float) -> Mover:
     return Mover("lever", pieces("lever", solids, STEEL), "revolute", (-1, 0, 0), (0.0, y[1], z), 1.3, "hinge_handle", "lever", UP)
 
 
-def _jug(x: float, y: float, low: float, high: float, r: float) -> tuple[Piece, ...]:
+def _jug(x: float, y: float, low: float, high: float, r: float) -> Pieces:
     """Return a glass jug half full of coffee, with a handle."""
     rim = high - 0.025
     wall = ring((r, 0.8 * r), (r - 0.006, 0.8 * r - 0.006), (low + 0.006, rim), 18, (x, y))

@@ -10,7 +10,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.dining_tables import cased_table, legged_table
 from pipeline.corpus.furniture.finishes import MIRROR, Scheme
 from pipeline.corpus.furniture.panels import Rect, frame
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, join_shapes, pieces, translate
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, join_shapes, pieces, translate
 from pipeline.corpus.furniture.solids import around, box, revolve, ring, standing
 from pipeline.corpus.furniture.storage import front_style
 
@@ -34,7 +34,7 @@ def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     return shape
 
 
-def _hutch(w: float, d: float, z: float, height: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _hutch(w: float, d: float, z: float, height: float, scheme: Scheme) -> Pieces:
     """Return a shelf that stands at the back of a desk."""
     depth = min(0.24, 0.4 * d)
     y = (d / 2 - depth, d / 2)
@@ -83,7 +83,7 @@ def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Sche
         return table
     tall = h - work
     y = d / 2 - 0.05
-    base: tuple[Piece, ...]
+    base: Pieces
     if form == "round_mirror":
         r = min(0.47 * tall, 0.4 * w)
         z = h - r

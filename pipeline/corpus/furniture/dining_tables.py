@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, beam, box, circle, polar, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import case_style, front_style
 
@@ -72,7 +72,7 @@ def rails(half: Spot, z: Interval, gap: float) -> list[Solid]:
     ]
 
 
-def _brace(kind: str, half: Spot, h: float, finish: Finish) -> tuple[Piece, ...]:
+def _brace(kind: str, half: Spot, h: float, finish: Finish) -> Pieces:
     """Return what keeps side frames apart: a beam under the top, or nothing."""
     if kind not in WIDE:
         return ()
@@ -135,7 +135,7 @@ def trumpet(radius: float, height: float) -> list[Solid]:
     return revolve([(a * radius, b * height) for a, b in steps], 24)
 
 
-def fluted_drum(radius: float, height: float, scheme: Scheme) -> tuple[Piece, ...]:
+def fluted_drum(radius: float, height: float, scheme: Scheme) -> Pieces:
     """Return a round base clad in upright half-round staves."""
     core = revolve([(radius, 0.0), (radius, height)], 24)
     r = math.pi * radius / 30
@@ -143,7 +143,7 @@ def fluted_drum(radius: float, height: float, scheme: Scheme) -> tuple[Piece, ..
     return pieces("drum", core, scheme.body) + pieces("staves", staves, scheme.body)
 
 
-def _bar(size: Size, t: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _bar(size: Size, t: float, scheme: Scheme) -> Pieces:
     """Return a counter's front of upright boards on a plinth, a shelf behind it and a foot rail before it."""
     w, d, h = size
     xs = np.linspace(-0.46 * w, 0.46 * w, max(5, round(w / 0.14)) + 1)

@@ -9,8 +9,8 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, pick
 from pipeline.corpus.furniture.panels import FrontStyle, Rect, panel
-from pipeline.corpus.furniture.shape import Axis3, Mover, Piece, Shape, Size, group_pieces, pieces
-from pipeline.corpus.furniture.solids import around, box, revolve
+from pipeline.corpus.furniture.shape import Axis3, Mover, Pieces, Shape, Size, group_pieces, pieces
+from pipeline.corpus.furniture.solids import around, box, edges, inset, revolve
 
 LEAF = 0.04  # thickness of a leaf [m]
 LEVER = 0.055  # how far a lever stands out of its leaf [m]
@@ -23,13 +23,13 @@ def room_door(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     finish = white if rng.random() < 0.5 else scheme.body
     t, stop = 0.045, 0.012
     y = (-d / 2 + LEVER, d / 2)
-    jambs = [box((-w / 2, -w / 2 + t), y, (0, h), 0.003), box((w / 2 - t, w / 2), y, (0, h), 0.003)]
+    jambs = [box(span, y, (0, h), 0.003) for span in edges(around(w / 2), t)]
     base = pieces("frame", [*jambs, box(around(w / 2 - t), y, (h - t, h), 0.003)], finish)
     inner = around(w / 2 - t)
     behind = (y[0] + LEAF + 0.004, y[1])
-    stops = [box((inner[0], inner[0] + stop), behind, (0, h - t)), box((inner[1] - stop, inner[1]), behind, (0, h - t))]
-    base += pieces("stops", [*stops, box((inner[0] + stop, inner[1] - stop), behind, (h - t - stop, h - t))], finish)
-    rect = Rect((inner[0] + 0.003, inner[1] - 0.003), (0.006, h - t - 0.003), y[0])
+    stops = [box(span, behind, (0, h - t)) for span in edges(inner, stop)]
+    base += pieces("stops", [*stops, box(inset(inner, stop), behind, (h - t - stop, h - t))], finish)
+    rect = Rect(inset(inner, 0.003), (0.006, h - t - 0.003), y[0])
     hinge_left = rng.random() < 0.5
     side = 1.0 if hinge_left else -1.0
     style = FrontStyle("slab", "none", finish, scheme.handle, LEAF)
@@ -43,7 +43,7 @@ def room_door(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return Shape(base, (leaf, *levers))
 
 
-def _leaf(rng: np.random.Generator, form: str, rect: Rect, style: FrontStyle) -> tuple[Piece, ...]:
+def _leaf(rng: np.random.Generator, form: str, rect: Rect, style: FrontStyle) -> Pieces:
     if form == "flush":
         return panel(rect, style)
     kind = "glass" if form == "glazed" else pick(rng, "shaker raised")

@@ -9,8 +9,8 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GRAPHITE, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, lid, top_button, top_knob
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, revolve, slab, standing
+from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, edges, inset, revolve, slab, standing
 
 SILVER = Finish("aluminium", (0.60, 0.61, 0.62), 0.3, 0.8, density=1400)
 DARK = Finish("shell_dark", (0.035, 0.036, 0.04), 0.4, density=1200)
@@ -42,11 +42,9 @@ def laptop(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     base += pieces("touch_pad", pad, Finish("touch_pad", (0.42, 0.42, 0.43), 0.35, density=1200), group="deck")
     low = deck + 0.0035
     cover = pieces("screen_back", box(x, y, (low, h), 0.002), finish, group="screen")
-    cover += pieces("bezel", box((x[0] + 0.003, x[1] - 0.003), (y[0] + 0.003, y[1] - 0.006), (low - 0.0008, low)), PLASTIC, group="screen")
+    cover += pieces("bezel", box(inset(x, 0.003), (y[0] + 0.003, y[1] - 0.006), (low - 0.0008, low)), PLASTIC, group="screen")
     pane = Finish("display", (0.03, 0.06, 0.11), 0.12, density=2500)
-    cover += pieces(
-        "display", box((x[0] + 0.009, x[1] - 0.009), (y[0] + 0.014, y[1] - 0.018), (low - 0.0016, low - 0.0008)), pane, group="screen"
-    )
+    cover += pieces("display", box(inset(x, 0.009), (y[0] + 0.014, y[1] - 0.018), (low - 0.0016, low - 0.0008)), pane, group="screen")
     return Shape(base, (lid("screen", cover, (0.0, d / 2, low), math.radians(125)),))
 
 
@@ -84,7 +82,7 @@ def phone(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     if form == "smart":
         side = w / 2 - 0.0014
         base = pieces("body", cushion((-side, side), y, (0.0012, h - 0.0006), 0.004), finish, group="body")
-        base += pieces("glass", box(around(side - 0.0025), (y[0] + 0.0025, y[1] - 0.0025), (h - 0.0008, h)), DARK_GLASS, group="body")
+        base += pieces("glass", box(around(side - 0.0025), inset(y, 0.0025), (h - 0.0008, h)), DARK_GLASS, group="body")
         base += pieces("camera", revolve([(0.008, 0.0), (0.008, 0.0012)], 12, (-side + 0.02, y[1] - 0.02)), DARK_GLASS, group="body")
         spots = (("power", 1.0, 0.16, 0.06), ("louder", -1.0, 0.22, 0.05), ("softer", -1.0, 0.08, 0.05))
         movers = []
@@ -186,8 +184,8 @@ def printer(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     cover = 0.16 * h if form == "scanner" else 0.05 * h
     top = h - cover - 0.003
     style = FrontStyle("slab", "edge", trim, PLASTIC, thickness=0.012)
-    base = pieces("sides", [box((x[0], x[0] + t), y, (0.006, top), 0.003), box((x[1] - t, x[1]), y, (0.006, top), 0.003)], finish)
-    inner = (x[0] + t, x[1] - t)
+    base = pieces("sides", [box(span, y, (0.006, top), 0.003) for span in edges(x, t)], finish)
+    inner = inset(x, t)
     base += pieces("bottom", box(inner, y, (0.006, 0.018)), finish) + pieces("back", box(inner, (y[1] - t, y[1]), (0.018, top)), finish)
     base += pieces("deck", box(inner, (y[0] + 0.004, y[1] - t), (tray, tray + 0.012)), trim)
     base += pieces("head", box(inner, (y[0] + 0.002, y[1] - t), (0.58 * h, top), 0.003), finish)
@@ -198,12 +196,12 @@ def printer(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     plane = y[0] + 0.002
     panel_z = (0.58 * h + 0.25 * (top - 0.58 * h), 0.58 * h + 0.75 * (top - 0.58 * h))
     base += pieces("display", box((-0.1 * w, 0.08 * w), (plane - 0.002, plane), panel_z), DARK_GLASS, group="display")
-    rect = Rect((inner[0] + 0.002, inner[1] - 0.002), (0.021, tray - 0.003), y[0])
+    rect = Rect(inset(inner, 0.002), (0.021, tray - 0.003), y[0])
     movers = [drawer("paper_drawer", rect, style, (inner, (0.018, tray), y[1] - t), PLASTIC)]
     for k in range(4 if form == "scanner" else 2):
         bx = 0.15 * w + 0.07 * w * k
         movers.append(button(f"button_{k}", (bx, bx + 0.045 * w), panel_z, plane, PLASTIC_WHITE if finish is not PALE else PLASTIC))
-    solids: tuple[Piece, ...] = pieces(
+    solids: Pieces = pieces(
         "cover", box(x, (y[0], y[1] - 0.002), (top + 0.003, h - 0.5 * cover if form == "scanner" else h), 0.003), finish, group="cover"
     )
     if form == "scanner":

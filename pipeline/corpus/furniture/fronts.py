@@ -10,8 +10,8 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.panels import LIP, FrontStyle, HandleStyle, PanelStyle, Rect, panel
-from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Piece, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, hull, revolve, ring, rod, standing
+from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, pieces
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, hull, inset, revolve, ring, rod, standing
 
 __all__ = ["FrontStyle", "HandleStyle", "PanelStyle", "Rect", "button", "door", "drawer", "handle", "knob", "lid", "panel", "sliding_door"]
 
@@ -29,7 +29,7 @@ def reach(handle: HandleStyle) -> float:
     return REACHES.get(handle, 0.0)
 
 
-def handle(style: FrontStyle, rect: Rect, *, upright: bool, at: Spot, length: float, name: str = "handle") -> tuple[Piece, ...]:
+def handle(style: FrontStyle, rect: Rect, *, upright: bool, at: Spot, length: float, name: str = "handle") -> Pieces:
     """Return the handle of a front with its middle `at` (x, z); `upright` turns a bar along z.
 
     It collides as one solid, but for a bar on feet: fingers come behind that.
@@ -167,10 +167,10 @@ def tray(x: Interval, y: Interval, z: Interval, wall: float) -> list[Solid]:
     """Return a drawer behind its front: a bottom of 8 mm, two sides and a back of thickness `wall` [m]."""
     low = z[0] + 0.008
     sides = [box(span, y, (low, z[1])) for span in ((x[0], x[0] + wall), (x[1] - wall, x[1]))]
-    return [box(x, y, (z[0], low)), *sides, box((x[0] + wall, x[1] - wall), (y[1] - wall, y[1]), (low, z[1]))]
+    return [box(x, y, (z[0], low)), *sides, box(inset(x, wall), (y[1] - wall, y[1]), (low, z[1]))]
 
 
-def _drawer_grips(rect: Rect, style: FrontStyle) -> tuple[tuple[Piece, ...], Axis3]:
+def _drawer_grips(rect: Rect, style: FrontStyle) -> tuple[Pieces, Axis3]:
     """Return one handle in the middle, or two on a wide front, and where a hand takes hold."""
     middle = rect.middle[0]
     height = rect.middle[1] if rect.height < 0.3 else rect.z[1] - 0.08
@@ -184,7 +184,7 @@ def _drawer_grips(rect: Rect, style: FrontStyle) -> tuple[tuple[Piece, ...], Axi
     return handle(style, rect, upright=False, at=(middle, height), length=min(length, 0.8 * rect.width)), at
 
 
-def lid(name: str, parts: tuple[Piece, ...], hinge: tuple[float, float, float], upper: float, parent: str = "base") -> Mover:
+def lid(name: str, parts: Pieces, hinge: tuple[float, float, float], upper: float, parent: str = "base") -> Mover:
     """Return a lid that opens upwards about an axis along x through `hinge`."""
     return Mover(name, parts, "revolute", (-1, 0, 0), hinge, upper, "hinge_lid", "lid", UP, parent)
 

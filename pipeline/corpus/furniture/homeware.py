@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
 from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, pick, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, pillow, polar, revolve, ring, rod, slab
 from pipeline.corpus.furniture.tableware import glaze
 from pipeline.corpus.furniture.wall_decor import INKS, frame_boards
@@ -194,14 +194,14 @@ def fruit_bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     if form == "foot":
         body += revolve([(0.55 * r, 0.0), (0.5 * r, 0.04 * h), (0.14 * r, 0.1 * h), (0.14 * r, low)], 14)
     q = 0.3 * r
-    fruit: tuple[Piece, ...] = ()
+    fruit: Pieces = ()
     for k, a in enumerate(turns(5, float(rng.uniform(0, 1)))):
         x, y, z = polar(0.52 * r, a, low + 0.42 * h + 0.5 * q)
         fruit += _fruit(rng, (x, y, z), q, k)
     return Shape(pieces("bowl", body, finish) + fruit + _fruit(rng, (0.0, 0.0, h - q), q, 5))
 
 
-def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, number: int) -> tuple[Piece, ...]:
+def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, number: int) -> Pieces:
     color = one_of(rng, FRUIT)
     rounds = [(0.3 * r, -r), (0.75 * r, -0.75 * r), (r, -0.1 * r), (0.8 * r, 0.7 * r), (0.3 * r, r)]
     solids = [s.moved(at) for s in revolve(rounds, 10)]

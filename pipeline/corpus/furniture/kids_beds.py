@@ -7,8 +7,8 @@ import numpy as np
 from pipeline.corpus.furniture.beds import bedding
 from pipeline.corpus.furniture.bent import prism
 from pipeline.corpus.furniture.finishes import PLASTIC, Scheme
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, rod
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Solid, around, box, inset, rod
 
 
 def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -22,37 +22,35 @@ def _rail_bed(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     low = min(0.36, 0.42 * h)
     posts = [
-        rod((px, py, 0), (px, py, (h if py > 0 else 0.8 * h) - 0.03), 0.5 * t, n=12)
-        for px in (x[0] + t / 2, x[1] - t / 2)
-        for py in (y[0] + t / 2, y[1] - t / 2)
+        rod((px, py, 0), (px, py, (h if py > 0 else 0.8 * h) - 0.03), 0.5 * t, n=12) for px in inset(x, t / 2) for py in inset(y, t / 2)
     ]
     knobs = [
         rod((px, py, z - 0.03), (px, py, z), 0.48 * t, 0.3 * t, 12)
-        for px in (x[0] + t / 2, x[1] - t / 2)
+        for px in inset(x, t / 2)
         for py, z in ((y[0] + t / 2, 0.8 * h), (y[1] - t / 2, h))
     ]
     boards = [
-        box((x[0] + t, x[1] - t), (y[1] - 0.03, y[1] - 0.008), (lift, low), 0.004),
-        box((x[0] + t, x[1] - t), (y[0] + 0.008, y[0] + 0.03), (lift, low), 0.004),
+        box(inset(x, t), (y[1] - 0.03, y[1] - 0.008), (lift, low), 0.004),
+        box(inset(x, t), (y[0] + 0.008, y[0] + 0.03), (lift, low), 0.004),
     ]
-    boards += [box((px, px + 0.022), (y[0] + t, y[1] - t), (lift, low), 0.004) for px in (x[0] + 0.01, x[1] - 0.032)]
-    boards += [box((x[0] + t, x[1] - t), (y[1] - 0.03, y[1] - 0.012), (h - 0.1, h - 0.04), 0.004)]
-    boards += [box((px, px + 0.022), (y[0] + t, y[1] - t), (0.66 * h, 0.66 * h + 0.06), 0.004) for px in (x[0] + 0.01, x[1] - 0.032)]
+    boards += [box((px, px + 0.022), inset(y, t), (lift, low), 0.004) for px in (x[0] + 0.01, x[1] - 0.032)]
+    boards += [box(inset(x, t), (y[1] - 0.03, y[1] - 0.012), (h - 0.1, h - 0.04), 0.004)]
+    boards += [box((px, px + 0.022), inset(y, t), (0.66 * h, 0.66 * h + 0.06), 0.004) for px in (x[0] + 0.01, x[1] - 0.032)]
     count = max(4, round((d - 2 * t) / 0.12))
     ys = np.linspace(y[0] + t + 0.06, y[1] - t - 0.06, count)
-    bars = [rod((px, b, low), (px, b, 0.66 * h), 0.008, n=6) for px in (x[0] + 0.021, x[1] - 0.021) for b in ys]
+    bars = [rod((px, b, low), (px, b, 0.66 * h), 0.008, n=6) for px in inset(x, 0.021) for b in ys]
     bars += [
         rod((a, y[1] - 0.02, low), (a, y[1] - 0.02, h - 0.1), 0.008, n=6)
         for a in np.linspace(x[0] + 0.14, x[1] - 0.14, max(5, round(w / 0.15)))
     ]
-    base = box((x[0] + 0.032, x[1] - 0.032), (y[0] + 0.03, y[1] - 0.03), (lift + 0.06, lift + 0.08))
+    base = box(inset(x, 0.032), inset(y, 0.03), (lift + 0.06, lift + 0.08))
     parts = (
         pieces("posts", posts, scheme.front)
         + pieces("knobs", knobs, scheme.timber)
         + pieces("boards", [*boards, base], scheme.front)
         + pieces("bars", bars, scheme.timber)
     )
-    return Shape(parts + bedding(rng, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), lift + 0.08, low + 0.06, scheme))
+    return Shape(parts + bedding(rng, inset(x, t), inset(y, t), lift + 0.08, low + 0.06, scheme))
 
 
 def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
@@ -63,13 +61,13 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     posts = [box((px, px + t), (py, py + t), (0, h), 0.008) for px in (x[0], x[1] - t) for py in (y[0], y[1] - t)]
     parts = pieces("posts", posts, scheme.front)
     upper = 0.24 + 0.48 * h
-    inner_x, inner_y = (x[0] + t, x[1] - t), (y[0] + 0.034, y[1] - 0.034)
+    inner_x, inner_y = inset(x, t), inset(y, 0.034)
     for z in (0.2, upper):
         boards = [box(inner_x, (py, py + 0.026), (z, z + 0.15), 0.004) for py in (y[0] + 0.008, y[1] - 0.034)]
-        boards += [box((px, px + 0.026), (y[0] + t, y[1] - t), (z, z + 0.15), 0.004) for px in (x[0] + 0.008, x[1] - 0.034)]
+        boards += [box((px, px + 0.026), inset(y, t), (z, z + 0.15), 0.004) for px in (x[0] + 0.008, x[1] - 0.034)]
         boards.append(box(inner_x, inner_y, (z + 0.02, z + 0.04)))
         guard = min(z + 0.3, h - 0.06) if z == upper else z + 0.3
-        boards += [box((px, px + 0.026), (y[0] + t, y[1] - t), (guard, guard + 0.06), 0.004) for px in (x[0] + 0.008, x[1] - 0.034)]
+        boards += [box((px, px + 0.026), inset(y, t), (guard, guard + 0.06), 0.004) for px in (x[0] + 0.008, x[1] - 0.034)]
         if z == upper:
             boards += [box(inner_x, (y[1] - 0.034, y[1] - 0.008), (guard, guard + 0.06), 0.004)]
             boards += [box((x[0] + t, x[1] - 0.64), (y[0] + 0.008, y[0] + 0.034), (guard, guard + 0.06), 0.004)]
@@ -77,9 +75,7 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
         parts += tuple(p for p in bedding(rng, inner_x, inner_y, z + 0.04, z + 0.19, scheme) if p.name not in ("throw", "cushion"))
     lx = (x[1] - 0.56, x[1] - 0.14)
     ladder: list[Solid] = [box(around(0.02, px), (-d / 2, -d / 2 + 0.06), (0, min(h, upper + 0.45)), 0.006) for px in lx]
-    ladder += [
-        box((lx[0] + 0.02, lx[1] - 0.02), (-d / 2 + 0.008, -d / 2 + 0.05), (z, z + 0.03), 0.004) for z in np.arange(0.25, upper, 0.27)
-    ]
+    ladder += [box(inset(lx, 0.02), (-d / 2 + 0.008, -d / 2 + 0.05), (z, z + 0.03), 0.004) for z in np.arange(0.25, upper, 0.27)]
     return Shape(parts + pieces("ladder", ladder, scheme.timber))
 
 
@@ -88,7 +84,7 @@ def _car(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     w, d, h = size
     x = w / 2
     body = min(0.55, 0.6 * h)
-    parts: tuple[Piece, ...] = ()
+    parts: Pieces = ()
     r = min(0.2, 0.24 * h)
     for s in (-1, 1):
         span = around(0.018, s * (x - 0.04))

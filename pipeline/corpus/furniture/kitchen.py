@@ -12,7 +12,7 @@ import numpy as np
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, PLASTIC, STEEL, STONE, Finish, Scheme, one_of
 from pipeline.corpus.furniture.fronts import reach
-from pipeline.corpus.furniture.shape import Mover, Piece, Shape, Size, join_shapes, pieces, staves
+from pipeline.corpus.furniture.shape import Mover, Piece, Pieces, Shape, Size, join_shapes, pieces, staves
 from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, revolve, rod, shell, strips, walls
 from pipeline.corpus.furniture.storage import front_style
 
@@ -72,7 +72,7 @@ def tall_unit(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return case(size, [Column(1, cells)], how)
 
 
-def bowl(x: Interval, y: Interval, top: float, depth: float, finish: Finish, wall: float = 0.008) -> tuple[Piece, ...]:
+def bowl(x: Interval, y: Interval, top: float, depth: float, finish: Finish, wall: float = 0.008) -> Pieces:
     """Return an open basin under the rectangle `x`, `y`: a bottom and four walls whose rims end at `top` [m]."""
     low = top - depth
     solids = [box(x, y, (low - wall, low)), *walls(x, y, (low, top), wall)]

@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Scheme
 from pipeline.corpus.furniture.shades import shade, shade_word
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import around, box, circle, polar, revolve, rod, slab, standing
 
 
@@ -31,7 +31,7 @@ def floor_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     return Shape(parts + (_tripod(rng, size, tall, scheme) if form == "tripod" else _pole(rng, size, tall, scheme)))
 
 
-def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> Pieces:
     """Build three legs, the hub on them, sometimes a shelf between them; the shade above is `tall`."""
     w, _, h = size
     r, metal = w / 2, scheme.handle
@@ -44,7 +44,7 @@ def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -
     return parts + pieces("hub", hub, metal)
 
 
-def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> Pieces:
     """Build a round foot with a pole under a shade that is `tall`, turned where the style likes ornament."""
     w, _, h = size
     r, metal = w / 2, scheme.handle
@@ -67,7 +67,7 @@ def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> 
     return pieces("pole", pole, metal)
 
 
-def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Build three lit globes on arms around a stem."""
     w, d, h = size
     r, metal = w / 2, scheme.handle

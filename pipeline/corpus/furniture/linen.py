@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import FABRICS, PAPER, Finish, Scheme, one_of, pick, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, circle, cushion, rod, rounded_rectangle, slab, standing
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Interval, Solid, around, box, circle, cushion, inset, rod, rounded_rectangle, slab, standing
 
 TERRY = ("snow_cloth", "cream_cloth", "grey_cloth", "linen", "blue_cloth", "mint_cloth", "taupe_cloth", "rust_cloth", "charcoal")
 
@@ -45,7 +45,7 @@ def towel(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     return Shape(parts + left + _towel_over_bar((0.02 * w, 0.46 * w), d, z, 0.8 * z, other, rng))
 
 
-def _towel_over_bar(x: Interval, d: float, top: float, drop: float, cloth: Finish, rng: np.random.Generator) -> tuple[Piece, ...]:
+def _towel_over_bar(x: Interval, d: float, top: float, drop: float, cloth: Finish, rng: np.random.Generator) -> Pieces:
     """Return a towel over a bar at height `top`: the front fall `drop` long, the back one a little shorter, a border near the hem."""
     t, half = 0.012, 0.016
     front, back = top - drop, top - drop * float(rng.uniform(0.75, 0.9))
@@ -55,14 +55,14 @@ def _towel_over_bar(x: Interval, d: float, top: float, drop: float, cloth: Finis
         cushion(x, around(half + t), (top + 0.004, top + 0.018), 0.006),
     ]
     hem = replace(cloth, name="hem", color=tuple(0.75 * c for c in cloth.color), pattern="weave")  # type: ignore[arg-type]
-    band = box((x[0] + 0.001, x[1] - 0.001), (-half - t - 0.0015, -half - t + 0.001), (front + 0.05, front + 0.085))
+    band = box(inset(x, 0.001), (-half - t - 0.0015, -half - t + 0.001), (front + 0.05, front + 0.085))
     return pieces("towel", falls, cloth) + pieces("hem", band, hem)
 
 
 def folded_towels(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a pile of folded towels, or three rolled ones."""
     w, d, h = size
-    parts: tuple[Piece, ...] = ()
+    parts: Pieces = ()
     if form == "rolled":
         r = min(w / 4, h / 3.6)
         spots = [(-r, r), (r, r), (0.0, r + 1.7 * r)]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import Finish
-from pipeline.corpus.furniture.shape import FRONT, Axis3, Mover, Piece, Shape
+from pipeline.corpus.furniture.shape import FRONT, Axis3, Mover, Piece, Pieces, Shape
 from pipeline.corpus.furniture.wavefront import mesh_frame
 
 
@@ -20,7 +20,7 @@ class Component:
     number: int
     name: str
     part: str
-    pieces: tuple[Piece, ...]
+    pieces: Pieces
 
     @property
     def file(self) -> str:
@@ -85,7 +85,7 @@ def link_records(shape: Shape, frame: Frame) -> list[LinkRecord]:
     return [*movers, *handles, LinkRecord(body, "base", None, np.zeros(3), _components(shape.base, number), "", FRONT)]
 
 
-def _components(parts: tuple[Piece, ...], first: int) -> tuple[Component, ...]:
+def _components(parts: Pieces, first: int) -> tuple[Component, ...]:
     """Group pieces into mesh files: each handle by itself, the rest by what it is made of."""
     finishes: dict[str, Finish] = {}
     for piece in parts:  # what collides as one lies in one file, named by the finish that it shows most of

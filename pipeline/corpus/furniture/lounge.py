@@ -9,9 +9,9 @@ import numpy as np
 from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube, turns, upright, wall
 from pipeline.corpus.furniture.finishes import PLASTIC, Finish, Scheme, cane, shade
 from pipeline.corpus.furniture.legs import draw_kind, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Solid, around, beam, box, cushion, polar, revolve, rod, slab, stack
-from pipeline.corpus.furniture.upholstery import seat_cushion, upright_pad
+from pipeline.corpus.furniture.upholstery import piping, seat_cushion, upright_pad
 
 
 def lounge_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -20,11 +20,7 @@ def lounge_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return Shape(build(rng, size, scheme))
 
 
-def _piping(rng: np.random.Generator, scheme: Scheme) -> Finish | None:
-    return scheme.second if rng.random() < scheme.manner.piping else None
-
-
-def _easy(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _easy(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     w, d, h = size
     seat, x, y = min(0.42, 0.48 * h), w / 2, d / 2
     arm = seat + 0.18
@@ -45,7 +41,7 @@ def _easy(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, 
     wide = around(x - 0.045)
     parts = pieces("frame", frame + rails, wood)
     parts += seat_cushion(
-        (wide[0], wide[1]), (-y + 0.01, back - 0.055), (seat - 0.125, seat + 0.02), 0.04, scheme.soft, _piping(rng, scheme), 0.025
+        (wide[0], wide[1]), (-y + 0.01, back - 0.055), (seat - 0.125, seat + 0.02), 0.04, scheme.soft, piping(rng, scheme), 0.025
     )
     top = h - 0.012
     pad = upright_pad(rng, scheme, wide, around(0.05, back), (seat - 0.1, top))
@@ -57,7 +53,7 @@ def _easy(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, 
     return parts + pieces("laths", lean(laths, seat - 0.1, slope), wood)
 
 
-def _wing(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _wing(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     w, d, h = size
     seat, x, y = min(0.44, 0.46 * h), w / 2, d / 2
     kind = draw_kind(rng, scheme, "plank cross sled hairpin pipe blade horse")
@@ -67,7 +63,7 @@ def _wing(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, 
     parts += pieces("body", cushion(around(x - 0.03), around(y - 0.02), (low, seat - 0.1), 0.025, 2), cloth)
     arm = 0.13 * min(1.0, w / 0.75)
     back = y - 0.15
-    parts += seat_cushion(around(x - arm), (-y, back - 0.002), (seat - 0.098, seat + 0.035), 0.04, cloth, _piping(rng, scheme), 0.03)
+    parts += seat_cushion(around(x - arm), (-y, back - 0.002), (seat - 0.098, seat + 0.035), 0.04, cloth, piping(rng, scheme), 0.03)
     parts += pieces("back", upright_pad(rng, scheme, around(x - arm + 0.02), (back, y - 0.01), (seat - 0.098, h)), cloth)
     roll = 0.5 * arm + 0.012
     top = seat + 0.22 - roll
@@ -83,7 +79,7 @@ def _wing(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, 
     return parts
 
 
-def _office(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _office(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     w, d, h = size
     seat, r = min(0.5, 0.52 * h), 0.46 * min(w, d)
     base: list[Solid] = []
@@ -118,7 +114,7 @@ def _office(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece
     return parts + pieces("arms", arms, PLASTIC)
 
 
-def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Bent plywood shells with thick leather pads on a star foot."""
     w, d, h = size
     seat, x, y = min(0.4, 0.46 * h), w / 2, d / 2
@@ -135,7 +131,7 @@ def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
     )
     parts = pieces("shells", sheet(under, 0.014, 2 * x - 0.12) + sheet(behind, 0.014, 2 * x - 0.14), wood)
     parts += seat_cushion(
-        around(x - 0.075), (-y + 0.005, 0.5 * y - 0.108), (seat - 0.05, seat + 0.065), 0.045, scheme.soft, _piping(rng, scheme), 0.02
+        around(x - 0.075), (-y + 0.005, 0.5 * y - 0.108), (seat - 0.05, seat + 0.065), 0.045, scheme.soft, piping(rng, scheme), 0.02
     )
     slope = (0.5 * y - 0.03) / (h - seat)
     pads = [
@@ -152,7 +148,7 @@ def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piec
     return parts + pieces("foot", star + column, scheme.handle)
 
 
-def _tub(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _tub(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Build a round seat inside a wall that wraps it, sewn in channels or plain."""
     w, d, h = size
     seat, x, y = min(0.43, 0.52 * h), w / 2, d / 2
@@ -178,7 +174,7 @@ def _tub(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, .
     return parts + pieces("seat", stack(rings), scheme.soft if rng.random() < 0.7 else scheme.second)
 
 
-def _rattan(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _rattan(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Build a round back of cane in a bent frame, a cushion on a woven seat."""
     w, d, h = size
     seat, x, y = min(0.4, 0.5 * h), w / 2, d / 2

@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GLASS, MIRROR, Finish
-from pipeline.corpus.furniture.shape import Piece, group_pieces, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, slab, stack
+from pipeline.corpus.furniture.shape import Pieces, group_pieces, pieces
+from pipeline.corpus.furniture.solids import Interval, Solid, around, box, inset, slab, stack
 
 PanelStyle = Literal["slab", "shaker", "raised", "glass", "dark_glass", "slats", "reeded", "cane", "mirror"]
 HandleStyle = Literal["bar", "long", "flat", "knob", "ring", "cup", "edge", "groove", "none"]
@@ -44,7 +44,7 @@ class Rect:
 
     def shrunk(self, by: float) -> Rect:
         """Return the place with a gap all around."""
-        return Rect((self.x[0] + by, self.x[1] - by), (self.z[0] + by, self.z[1] - by), self.y)
+        return Rect(inset(self.x, by), inset(self.z, by), self.y)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +58,13 @@ class FrontStyle:
     thickness: float = 0.019
 
 
-def panel(rect: Rect, style: FrontStyle) -> tuple[Piece, ...]:
+def panel(rect: Rect, style: FrontStyle) -> Pieces:
     """Return the panel of a front; whatever it is made of, it collides as one board."""
     parts = _panel(rect, style)
     return parts if len(parts) == 1 else group_pieces(parts, "front")
 
 
-def _panel(rect: Rect, style: FrontStyle) -> tuple[Piece, ...]:
+def _panel(rect: Rect, style: FrontStyle) -> Pieces:
     y, t = rect.y, style.thickness
     rail = min(0.065, 0.22 * min(rect.width, rect.height))
     depth = (y, y + t)
@@ -80,9 +80,9 @@ def _panel(rect: Rect, style: FrontStyle) -> tuple[Piece, ...]:
     if style.panel == "mirror":
         back = pieces("front", box(rect.x, (y + 0.005, y + t), rect.z, 0.002), style.finish)
         edge = 0.012
-        pane = box((rect.x[0] + edge, rect.x[1] - edge), (y, y + 0.005), (rect.z[0] + edge, rect.z[1] - edge), 0.0015)
+        pane = box(inset(rect.x, edge), (y, y + 0.005), inset(rect.z, edge), 0.0015)
         return back + pieces("front_mirror", pane, MIRROR)
-    inner = Rect((rect.x[0] + rail, rect.x[1] - rail), (rect.z[0] + rail, rect.z[1] - rail), y)
+    inner = Rect(inset(rect.x, rail), inset(rect.z, rail), y)
     return pieces("front_frame", frame(rect, inner, depth), style.finish) + _filling(inner, style)
 
 
@@ -96,7 +96,7 @@ def frame(rect: Rect, inner: Rect, depth: Interval, bevel: float = 0.002) -> lis
     ]
 
 
-def _filling(inner: Rect, style: FrontStyle) -> tuple[Piece, ...]:
+def _filling(inner: Rect, style: FrontStyle) -> Pieces:
     """Return what a frame holds."""
     y, t = inner.y, style.thickness
     if style.panel == "slats":

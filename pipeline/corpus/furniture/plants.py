@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
 from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, SOIL, Finish, Scheme, one_of, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Solid, Spot, circle, polar, ring, rod, slab
 
 GOLDEN = math.pi * (3 - math.sqrt(5))
@@ -29,14 +29,14 @@ def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     return Shape(pot + grow(rng, (w / 2, d / 2), crown, h, pot_r, green))
 
 
-def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[tuple[Piece, ...], float]:
+def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[Pieces, float]:
     """Return a pot with soil, and the height of the soil: tapered, cylindrical, bellied, a box, or a planter on legs."""
     clay = Finish("clay", (0.42, 0.17, 0.09), 0.8, density=1800)
     concrete = Finish("concrete_pot", (0.34, 0.34, 0.33), 0.8, pattern="concrete", density=2000)
     finish = one_of(rng, (CERAMIC, clay, scheme.front, concrete))
     kind = int(rng.integers(4))
     lift = 0.0
-    parts: tuple[Piece, ...] = ()
+    parts: Pieces = ()
     if kind == 3 and h > 0.15:  # a cylinder in a wooden stand
         lift = 0.35 * h
         parts += pieces(
@@ -61,13 +61,11 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
     return parts + pieces("soil", slab(circle(inner, 18), (crown - 0.02, crown)), SOIL), crown
 
 
-def _leaves(
-    roots: list[Points], tips: list[Points], width: float | Points, finish: Finish, *, belly: float = 0.5, n: int = 8
-) -> tuple[Piece, ...]:
+def _leaves(roots: list[Points], tips: list[Points], width: float | Points, finish: Finish, *, belly: float = 0.5, n: int = 8) -> Pieces:
     return pieces("leaves", blades(np.array(roots), np.array(tips), width, belly=belly, n=n), finish)
 
 
-def _bush(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _bush(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> Pieces:
     """Many small leaves in pairs along stems that fan out of the pot."""
     stems: list[Solid] = []
     roots: list[Points] = []
@@ -89,7 +87,7 @@ def _bush(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: flo
     return pieces("stems", stems, BARK) + _leaves(roots, tips, 0.10 * min(half) + 0.026, green)
 
 
-def _palm(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _palm(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> Pieces:
     """Arching fronds with leaflets on both sides."""
     stems: list[Solid] = []
     roots: list[Points] = []
@@ -138,7 +136,7 @@ def _big_leaf(base: Points, direction: float, droop: float, size: float) -> tupl
     return roots, tips
 
 
-def _monstera(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _monstera(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> Pieces:
     """Long stalks, each with one large leaf split into lobes."""
     stems: list[Solid] = []
     roots: list[Points] = []
@@ -159,7 +157,7 @@ def _monstera(rng: np.random.Generator, half: Spot, crown: float, h: float, pot:
     return pieces("stems", stems, green) + _leaves(roots, tips, 0.3 * size, green)
 
 
-def _fig(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _fig(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> Pieces:
     """Build a thin trunk with large upright leaves around its upper half."""
     top = h - 0.16
     lean = 0.06 * half[0]
@@ -181,7 +179,7 @@ def _fig(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: floa
     )
 
 
-def _olive(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> tuple[Piece, ...]:
+def _olive(rng: np.random.Generator, half: Spot, crown: float, h: float, pot: float, green: Finish) -> Pieces:
     """Build a bare stem with a round head of twigs and small grey leaves."""
     trunk_top = crown + 0.45 * (h - crown)
     trunk = curve([(0, 0, crown - 0.008), (0.05 * half[0], 0, 0.5 * (crown + trunk_top)), (0, 0, trunk_top)], 2)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,10 +11,22 @@ from pipeline.corpus.furniture.backs import Frame, back
 from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane, one_of
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, Spot, around, beam, box, cushion, revolve, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import (
+    Solid,
+    around,
+    beam,
+    between,
+    board,
+    box,
+    corners,
+    cushion,
+    revolve,
+    rod,
+    slab,
+)
 from pipeline.corpus.furniture.styles import CLASSIC, ORIENTAL
-from pipeline.corpus.furniture.upholstery import seat_cushion
+from pipeline.corpus.furniture.upholstery import piping, seat_cushion
 
 TUBE = 0.011  # radius of bent steel
 
@@ -24,16 +37,13 @@ def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return Shape(build(rng, size, scheme) if build else _frame_chair(rng, form, size, scheme))
 
 
-def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Pieces:
     w, d, h = size
     seat = min(0.47, 0.56 * h)
     x, y = w / 2, d / 2
     thick = 0.034 * scheme.manner.slim
-    kind = (
-        "ming"
-        if scheme.style in ORIENTAL
-        else draw_kind(rng, scheme, "plank cross hairpin block bun sled pipe" if form != "cafe" else "plank cross block bun")
-    )
+    without = "plank cross hairpin block bun sled pipe" if form != "cafe" else "plank cross block bun"
+    kind = "ming" if scheme.style in ORIENTAL else draw_kind(rng, scheme, without)
     wood = leg_finish(scheme, kind)
     rise = 0.12 * (h - seat)
     back_y = y - rise - 0.5 * thick
@@ -43,77 +53,45 @@ def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     half = inside(kind, (x, (back_y + y) / 2 + 0.3 * thick), under, thick)
     middle = (back_y - y) / 2 + 0.3 * thick
     parts = pieces("legs", [s.moved((0, middle, 0)) for s in legs(kind, half, under, thick)], wood)
-    parts += pieces(
-        "rail", slab(rounded_rectangle(around(x - 0.012), (-y + 0.016, back_y + 0.5 * thick), 0.02, 2), (under, under + rail), 0.004), wood
-    )
+    parts += pieces("rail", board(around(x - 0.012), (-y + 0.016, back_y + 0.5 * thick), (under, under + rail), 0.02, 2, 0.004), wood)
     span_x, span_y = (-x, x), (-y, back_y - 0.55 * thick)
     if form == "wood":
-        parts += pieces("seat", slab(rounded_rectangle(span_x, span_y, 0.05, 3), (seat - top, seat), scheme.manner.edge), scheme.body)
+        parts += pieces("seat", board(span_x, span_y, (seat - top, seat), 0.05, 3, scheme.manner.edge), scheme.body)
     elif scheme.manner.cane > 0.3 and rng.random() < scheme.manner.cane:
-        parts += pieces("seat", slab(rounded_rectangle(span_x, span_y, 0.05, 3), (seat - top, seat - 0.01), 0.006), cane(rng))
+        parts += pieces("seat", board(span_x, span_y, (seat - top, seat - 0.01), 0.05, 3, 0.006), cane(rng))
     else:
-        piping = scheme.second if rng.random() < scheme.manner.piping else None
-        parts += seat_cushion(span_x, span_y, (seat - top, seat + 0.02), 0.04, scheme.soft, piping, 0.018)
+        parts += seat_cushion(span_x, span_y, (seat - top, seat + 0.02), 0.04, scheme.soft, piping(rng, scheme), 0.018)
     frame = Frame(x - 0.012, back_y, under + rail, h, rise / (h - seat), thick, wood)
     kinds = {"wood": "slat ladder panel cane", "upholstered": "pad", "spindle": "spindle", "cafe": "cross"}[form]
-    if form == "wood" and scheme.style in ORIENTAL:
-        kinds = "splat"
-    elif form == "wood" and scheme.style in CLASSIC:
-        kinds = "splat ladder"
+    if form == "wood" and scheme.style in (*ORIENTAL, *CLASSIC):
+        kinds = "splat" if scheme.style in ORIENTAL else "splat ladder"
     choice = one_of(rng, kinds.split())
     if choice == "pad":
-        short = [
-            beam((s * 0.62 * x, back_y, under + rail), (s * 0.62 * x, back_y, seat - 0.021 + 0.08 * (h - seat + 0.02)), 0.03, 0.022)
-            for s in (-1, 1)
-        ]
+        foot, head = (back_y, under + rail), (back_y, seat - 0.021 + 0.08 * (h - seat + 0.02))
+        short = [beam((s * 0.62 * x, *foot), (s * 0.62 * x, *head), 0.03, 0.022) for s in (-1, 1)]
         parts += pieces("posts", lean(short, under + rail, frame.slope), wood)
-        frame = Frame(frame.x, frame.y, seat - 0.02, h, frame.slope, thick, wood)
+        frame = replace(frame, low=seat - 0.02)
     parts += back(rng, choice, frame, scheme)
     if kind in ("square", "ming", "turned") and rng.random() < 0.55:
-        z = 0.36 * under
-        low = [
-            box(around(0.009, s * half[0]), (middle - half[1] + 0.5 * thick, middle + half[1] - 0.5 * thick), (z, z + 0.026), 0.002)
-            for s in (-1, 1)
-        ]
-        parts += pieces("stretchers", low, wood)
+        z, span = 0.36 * under, (middle - half[1] + 0.5 * thick, middle + half[1] - 0.5 * thick)
+        parts += pieces("stretchers", [box(around(0.009, s * half[0]), span, (z, z + 0.026), 0.002) for s in (-1, 1)], wood)
     return parts
 
 
-def _bucket(x: float, profile: list[Spot], thick: float, steps: int = 3) -> list[Solid]:
-    """Return a seat and a back in one bent board: `profile` in (y, z), as wide as 2 x, a little narrower at both ends."""
-    path = curve([np.array(p) for p in profile], steps)
-    t = np.linspace(-1, 1, len(path))
-    return sheet(path, thick, 2 * x * (1 - 0.13 * np.abs(t) ** 3))
-
-
-def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Build a bent shell of plywood, plastic or cloth on four legs, a wire base, or a swivel foot."""
     w, d, h = size
     seat, x, y = min(0.46, 0.55 * h), w / 2, d / 2
-    u = rng.random()
-    soft = u < 0.45
+    soft = rng.random() < 0.45
     finish = scheme.soft if soft else scheme.front
     thick = 0.035 if soft else 0.013
-    profile = [
-        (-y + thick, seat - 0.02),
-        (-0.72 * y, seat),
-        (0.1 * y, seat - 0.025),
-        (0.52 * y, seat + 0.01),
-        (0.74 * y, seat + 0.3 * (h - seat)),
-        (y - 0.02, h),
-    ]
-    parts = pieces("shell", _bucket(x, profile, thick, 3), finish)
+    front = [(-y + thick, seat - 0.02), (-0.72 * y, seat), (0.1 * y, seat - 0.025)]
+    path = curve([*front, (0.52 * y, seat + 0.01), (0.74 * y, seat + 0.3 * (h - seat)), (y - 0.02, h)], 3)
+    narrow = 1 - 0.13 * np.abs(np.linspace(-1, 1, len(path))) ** 3  # towards both ends
+    parts = pieces("shell", sheet(path, thick, 2 * x * narrow), finish)
     if soft or rng.random() < 0.3:  # low sides that hold the sitter
-        wings = [
-            cushion(
-                (min(s * x, s * (x - 0.03)), max(s * x, s * (x - 0.03))),
-                (-0.25 * y, 0.6 * y),
-                (seat + 0.025, seat + 0.42 * (h - seat)),
-                0.014,
-                2,
-            )
-            for s in (-1, 1)
-        ]
+        tall = (seat + 0.025, seat + 0.42 * (h - seat))
+        wings = [cushion(between(s * x, s * (x - 0.03)), (-0.25 * y, 0.6 * y), tall, 0.014, 2) for s in (-1, 1)]
         parts += pieces("arms", wings, finish)
     if not soft and rng.random() < 0.4:
         parts += seat_cushion(around(0.8 * x), (-0.7 * y, 0.4 * y), (seat + 0.008, seat + 0.04), 0.015, scheme.soft, None, 0.006)
@@ -122,14 +100,13 @@ def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[
     if base == 0:
         column = revolve([(0.42 * w, 0.0), (0.42 * w, 0.01), (0.03, 0.03), (0.022, top - 0.02), (0.12, top - 0.012), (0.12, top)], 20)
         return parts + pieces("foot", column, scheme.handle)
-    kind = "splayed" if base == 1 else "dowel"
-    finish = scheme.timber if base == 1 else scheme.handle
-    feet = legs(kind, (0.3 * w, 0.3 * d), top - 0.012, 0.036 if base == 1 else 0.026)
-    plate = slab(rounded_rectangle(around(0.34 * w), around(0.34 * d), 0.03, 2), (top - 0.012, top), 0.002)
+    kind, thick, finish = ("splayed", 0.036, scheme.timber) if base == 1 else ("dowel", 0.026, scheme.handle)
+    feet = legs(kind, (0.3 * w, 0.3 * d), top - 0.012, thick)
+    plate = board(around(0.34 * w), around(0.34 * d), (top - 0.012, top), 0.03, 2, 0.002)
     return parts + pieces("legs", feet, finish) + pieces("plate", plate, scheme.handle)
 
 
-def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Build a round crest that becomes the arms, on posts, with a forked splat and a woven seat."""
     w, d, h = size
     seat, x, y, wood = min(0.45, 0.55 * h), w / 2, d / 2, scheme.timber
@@ -138,50 +115,35 @@ def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Pie
     path = np.column_stack([bow, np.interp(np.abs(bow[:, 0]), [0, x], [h - r, h - 0.1 * h])])
     crest = tube(np.concatenate([[path[0] + np.array([0, -0.35 * y, -0.02])], path, [path[-1] + np.array([0, -0.35 * y, -0.02])]]), r, 8)
     front = [rod((s * (x - 0.03), -y + 0.035, 0), (s * (x - 0.02), -y + 0.05, seat + 0.008), 0.013, 0.018, 8) for s in (-1, 1)]
-    rear = [
-        tube(
-            curve([(s * 0.62 * x, y - 0.03, 0), (s * 0.66 * x, 0.55 * y, seat), (s * 0.80 * x, 0.42 * y, h - 0.13)], 2),
-            [0.013, 0.016, 0.018, 0.016, 0.014],
-            8,
-        )
-        for s in (-1, 1)
-    ]
-    top = h - 2 * r
-    fork = [rod((0, 0.62 * y, seat + 0.01), (0, 0.72 * y, seat + 0.45 * (top - seat)), 0.016, 0.018, 8)]
-    fork += [rod((s * 0.006, 0.72 * y, seat + 0.45 * (top - seat)), (s * 0.16 * x, 0.9 * y, top), 0.012, 0.01, 8) for s in (-1, 1)]
+    rear: list[Solid] = []
+    for s in (-1, 1):
+        bend = curve([(s * 0.62 * x, y - 0.03, 0), (s * 0.66 * x, 0.55 * y, seat), (s * 0.80 * x, 0.42 * y, h - 0.13)], 2)
+        rear += tube(bend, [0.013, 0.016, 0.018, 0.016, 0.014], 8)
+    top, cleft = h - 2 * r, seat + 0.45 * (h - 2 * r - seat)
+    fork = [rod((0, 0.62 * y, seat + 0.01), (0, 0.72 * y, cleft), 0.016, 0.018, 8)]
+    fork += [rod((s * 0.006, 0.72 * y, cleft), (s * 0.16 * x, 0.9 * y, top), 0.012, 0.01, 8) for s in (-1, 1)]
     rails = [rod((-x + 0.045, -y + 0.05, seat - 0.025), (x - 0.045, -y + 0.05, seat - 0.025), 0.014, n=8)]
     rails += [rod((s * (x - 0.028), -y + 0.06, seat - 0.05), (s * 0.70 * x, 0.5 * y, seat - 0.05), 0.012, n=8) for s in (-1, 1)]
     weave = Finish("cord", (0.56, 0.46, 0.32), 0.95, pattern="knit", density=300)
     quad = np.array([(-x + 0.03, -y + 0.036), (x - 0.03, -y + 0.036), (0.66 * x, 0.5 * y), (-0.66 * x, 0.5 * y)])
-    parts = pieces("frame", crest + front + [s for leg in rear for s in leg] + rails, wood) + pieces("fork", fork, wood)
+    parts = pieces("frame", crest + front + rear + rails, wood) + pieces("fork", fork, wood)
     return parts + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), weave)
 
 
-def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Bent steel from the floor over the front up to the seat and the back, with cane, leather or cloth between."""
     w, d, h = size
     seat, x, y = min(0.46, 0.56 * h), w / 2 - TUBE, d / 2
-    side = [
-        (y - 0.03, TUBE),
-        (-y + 0.06, TUBE),
-        (-y + TUBE, 0.06),
-        (-y + TUBE, seat - 0.08),
-        (-y + 0.06, seat - 0.02),
-        (0.55 * y, seat - 0.035),
-        (0.66 * y, seat + 0.02),
-        (y - 0.012, h - 0.012),
-    ]
+    side = [(y - 0.03, TUBE), (-y + 0.06, TUBE), (-y + TUBE, 0.06), (-y + TUBE, seat - 0.08), (-y + 0.06, seat - 0.02)]
+    side += [(0.55 * y, seat - 0.035), (0.66 * y, seat + 0.02), (y - 0.012, h - 0.012)]
     frame = [s for sx in (-1, 1) for s in tube([(sx * x, a, b) for a, b in side], TUBE, 8)]
     frame += [rod((-x + TUBE, y - 0.03, TUBE), (x - TUBE, y - 0.03, TUBE), TUBE, n=8)]
-    panel = scheme.soft if rng.random() < 0.6 else cane(rng)
+    panel, thick = (scheme.soft, 0.03) if rng.random() < 0.6 else (cane(rng), 0.014)
     inner = around(x - TUBE - 0.002)
-    thick = 0.03 if panel is scheme.soft else 0.014
-    parts = pieces("frame", frame, scheme.handle) + pieces(
-        "seat", cushion(inner, (-y + 0.05, 0.5 * y), (seat - 0.035, seat - 0.035 + thick), 0.012, 2), panel
-    )
-    low = seat + 0.28 * (h - seat)
+    seat_pad = cushion(inner, (-y + 0.05, 0.5 * y), (seat - 0.035, seat - 0.035 + thick), 0.012, 2)
     slope = (y - 0.012 - 0.66 * y) / (h - seat - 0.03)
-    pad = cushion(inner, around(thick / 2, 0.66 * y), (low, h), 0.012, 2)
+    pad = cushion(inner, around(thick / 2, 0.66 * y), (seat + 0.28 * (h - seat), h), 0.012, 2)
+    parts = pieces("frame", frame, scheme.handle) + pieces("seat", seat_pad, panel)
     return parts + pieces("back", lean([pad], seat + 0.02, slope), panel)
 
 
@@ -191,52 +153,33 @@ def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     seat = min(0.5, 0.55 * h)
     x, y = 0.5 * w - 0.03, 0.5 * d - 0.03
     wood = scheme.timber
-    board = 0.032
-    sides = [rod((-x + 0.017, sy, z), (x - 0.017, sy, z), 0.012, n=8) for sy, z in ((-y, 0.07), (y, 0.12))] + [
-        rod((s * x, -y + 0.017, 0.1), (s * x, y - 0.017, 0.1), 0.012, n=8) for s in (-1, 1)
-    ]
-    parts = pieces(
-        "posts", [rod((s * x, t * y, 0), (s * x, t * y, seat - board), 0.018, 0.016, 10) for s in (-1, 1) for t in (-1, 1)] + sides, wood
-    )
-    parts += pieces("seat", box(around(x + 0.03), around(y + 0.03), (seat - board, seat), 0.006), wood)
-    apron = [box(around(x - 0.02), around(0.006, t * y), (seat - 0.09, seat - board), 0.002) for t in (-1, 1)]
-    apron += [box(around(0.006, s * x), around(y - 0.02), (seat - 0.08, seat - board), 0.002) for s in (-1, 1)]
+    under = seat - 0.032
+    posts = [rod((px, py, 0), (px, py, under), 0.018, 0.016, 10) for px, py in corners(x, y)]
+    posts += [rod((-x + 0.017, sy, z), (x - 0.017, sy, z), 0.012, n=8) for sy, z in ((-y, 0.07), (y, 0.12))]
+    posts += [rod((s * x, -y + 0.017, 0.1), (s * x, y - 0.017, 0.1), 0.012, n=8) for s in (-1, 1)]
+    parts = pieces("posts", posts, wood) + pieces("seat", box(around(x + 0.03), around(y + 0.03), (under, seat), 0.006), wood)
+    apron = [box(around(x - 0.02), around(0.006, t * y), (seat - 0.09, under), 0.002) for t in (-1, 1)]
+    apron += [box(around(0.006, s * x), around(y - 0.02), (seat - 0.08, under), 0.002) for s in (-1, 1)]
     parts += pieces("apron", apron, wood)
-    arm = seat + (0.5 if form != "rose" else 0.62) * (h - seat)
-    upper, top = _yoke(form, x, y, seat, arm, h)
-    parts += pieces("frame", upper, wood)
+    upper, top = _yoke(form, x, y, seat, seat + (0.5 if form != "rose" else 0.62) * (h - seat), h)
     splat = box((-0.085, 0.085), around(0.007, y), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
-    parts += pieces("splat", splat, wood)
+    parts += pieces("frame", upper, wood) + pieces("splat", splat, wood)
     if rng.random() < 0.55:
-        parts += seat_cushion(
-            around(0.84 * x),
-            (-0.86 * y, 0.8 * y),
-            (seat + 0.0005, seat + 0.045),
-            0.02,
-            scheme.soft,
-            scheme.second if rng.random() < 0.4 else None,
-            0.008,
-        )
+        cord = scheme.second if rng.random() < 0.4 else None
+        parts += seat_cushion(around(0.84 * x), (-0.86 * y, 0.8 * y), (seat + 0.0005, seat + 0.045), 0.02, scheme.soft, cord, 0.008)
     return Shape(parts)
 
 
 def _yoke(form: str, x: float, y: float, seat: float, arm: float, h: float) -> tuple[list[Solid], float]:
     """Build the posts, arms and top rail of an official's hat chair or a rose chair; returns them with the height of the posts."""
     r = 0.0145
-    upper: list[Solid] = []
     top = h - 0.045 if form == "official" else h - 2 * r
-    upper += [rod((s * x, y, seat), (s * x, y, top), 0.016, 0.014, 10) for s in (-1, 1)]
+    upper = [rod((s * x, y, seat), (s * x, y, top), 0.016, 0.014, 10) for s in (-1, 1)]
     upper += [rod((s * x, -y, seat), (s * x, -y, arm - r), 0.015, n=8) for s in (-1, 1)]
     upper += [rod((s * x, -y - 0.03, arm), (s * x, y - 0.016, arm + 0.015), r, n=8) for s in (-1, 1)]
     if form == "official":
-        upper += tube(
-            curve(
-                [(-x - 0.03, y, h - 0.04), (-0.5 * x, y, h - 0.028), (0, y, h - 0.02), (0.5 * x, y, h - 0.028), (x + 0.03, y, h - 0.04)], 2
-            ),
-            0.017,
-            8,
-        )
-    else:
-        upper += [rod((-x, y, h - r), (x, y, h - r), r, n=8)]
-        upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
+        bow = ((-x - 0.03, 0.04), (-0.5 * x, 0.028), (0, 0.02), (0.5 * x, 0.028), (x + 0.03, 0.04))
+        return upper + tube(curve([(px, y, h - drop) for px, drop in bow], 2), 0.017, 8), top
+    upper += [rod((-x, y, h - r), (x, y, h - r), r, n=8)]
+    upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
     return upper, top

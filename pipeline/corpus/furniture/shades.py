@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import band, curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Finish, Scheme, cane, one_of
 from pipeline.corpus.furniture.finishes import shade as tinted
-from pipeline.corpus.furniture.shape import Piece, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, revolve, ring, rod, slab
 
 CLOTH = Finish("shade_cloth", (0.80, 0.75, 0.65), 0.9, density=150)
@@ -33,7 +33,7 @@ def rose(h: float, radius: float = 0.055) -> list[Solid]:
     return revolve([(radius, h - 0.024), (radius, h - 0.006), (0.9 * radius, h)], 20)
 
 
-def bulb(z: float, tall: float, at: Spot) -> tuple[Piece, ...]:
+def bulb(z: float, tall: float, at: Spot) -> Pieces:
     """Return a bulb that stands on `z`."""
     return pieces(
         "bulb",
@@ -42,9 +42,7 @@ def bulb(z: float, tall: float, at: Spot) -> tuple[Piece, ...]:
     )
 
 
-def shade(
-    rng: np.random.Generator, scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot = (0.0, 0.0), n: int = 24
-) -> tuple[Piece, ...]:
+def shade(rng: np.random.Generator, scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot = (0.0, 0.0), n: int = 24) -> Pieces:
     """Return a shade of `radius` over heights `z`: hollow with a bulb and spokes in it, or a lit globe."""
     low, high = z
     tall = high - low
@@ -80,7 +78,7 @@ def shade(
     return parts + _fittings(radius, profile[-1][0], z, at, metal)
 
 
-def _ball(scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot, n: int) -> tuple[Piece, ...]:
+def _ball(scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot, n: int) -> Pieces:
     """Build a lit globe with its cap, or a squat ball of paper on a neck."""
     low, high = z
     tall = high - low
@@ -119,11 +117,11 @@ def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
     return walls
 
 
-def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Finish) -> tuple[Piece, ...]:
+def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Finish) -> Pieces:
     """Build the spokes that carry an open shade whose upper rim has radius `top`, its socket and its bulb, where there is room for them."""
     low, high = z
     tall = high - low
-    parts: tuple[Piece, ...] = ()
+    parts: Pieces = ()
     if top > 0.05:  # spokes carry an open shade
         inner = top - 0.5 * WALL
         zt = high - 0.03 * tall - 0.004
@@ -146,7 +144,7 @@ def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Finish) -
     return parts
 
 
-def _lantern(scheme: Scheme, radius: float, z: Interval, at: Spot) -> tuple[Piece, ...]:
+def _lantern(scheme: Scheme, radius: float, z: Interval, at: Spot) -> Pieces:
     """Four paper panes in a frame of thin wood with a cap and a foot."""
     low, high = z
     r = radius / math.sqrt(2) * 1.35
@@ -180,13 +178,13 @@ def _lantern(scheme: Scheme, radius: float, z: Interval, at: Spot) -> tuple[Piec
     return pieces("frame", posts + bars + caps, wood) + pieces("panes", panes, GLOW)
 
 
-def _cage(scheme: Scheme, radius: float, z: Interval, at: Spot) -> tuple[Piece, ...]:
+def _cage(scheme: Scheme, radius: float, z: Interval, at: Spot) -> Pieces:
     """Bent wires around a bare bulb, hoops that hold them, a cap with the socket."""
     low, high = z
     tall = high - low
     metal = scheme.handle
     shape = [(0.34, 0.0), (0.8, 0.14), (1.0, 0.42), (0.8, 0.7), (0.3, 0.9)]
-    parts: tuple[Piece, ...] = ()
+    parts: Pieces = ()
     for a in turns(8):
         c, s = math.cos(a), math.sin(a)
         path = curve([(at[0] + (r * radius - 0.004) * c, at[1] + (r * radius - 0.004) * s, low + q * tall) for r, q in shape], 1)

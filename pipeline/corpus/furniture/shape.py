@@ -35,6 +35,9 @@ class Piece:
     group: str = ""
 
 
+Pieces = tuple[Piece, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Mover:
     """A body that moves against its parent (a mover's name, or "base").
@@ -45,7 +48,7 @@ class Mover:
     """
 
     name: str
-    pieces: tuple[Piece, ...]
+    pieces: Pieces
     type: Literal["revolute", "prismatic", "continuous"]
     axis: Axis3
     origin: Axis3
@@ -62,7 +65,7 @@ class Mover:
 class Shape:
     """A model's geometry: the fixed base and its movers, parents first."""
 
-    base: tuple[Piece, ...]
+    base: Pieces
     movers: tuple[Mover, ...] = ()
 
     def pieces(self) -> Iterator[Piece]:
@@ -77,19 +80,19 @@ class Shape:
         return np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
 
 
-def pieces(name: str, solids: Solid | Iterable[Solid], finish: Finish, part: str = "", group: str = "") -> tuple[Piece, ...]:
+def pieces(name: str, solids: Solid | Iterable[Solid], finish: Finish, part: str = "", group: str = "") -> Pieces:
     """Return the pieces of one component."""
     if isinstance(solids, Solid):
         return (Piece(name, solids, finish, part, group),)
     return tuple(Piece(name, solid, finish, part, group) for solid in solids)
 
 
-def group_pieces(parts: Iterable[Piece], group: str) -> tuple[Piece, ...]:
+def group_pieces(parts: Iterable[Piece], group: str) -> Pieces:
     """Return the pieces, all colliding as one convex solid."""
     return tuple(replace(piece, group=group) for piece in parts)
 
 
-def staves(name: str, solids: Sequence[Solid], finish: Finish, part: str = "", each: int = 3) -> tuple[Piece, ...]:
+def staves(name: str, solids: Sequence[Solid], finish: Finish, part: str = "", each: int = 3) -> Pieces:
     """Return the staves of a round wall, `each` neighbours of which collide as one: finer to see than to touch."""
     return tuple(Piece(name, solid, finish, part, f"{name}_{k // each}") for k, solid in enumerate(solids))
 
@@ -129,7 +132,7 @@ def fit_to_size(shape: Shape, size: Vector) -> Shape:
     factors = np.asarray(size, float) / (high - low)
     offset = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
 
-    def place(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
+    def place(parts: Pieces) -> Pieces:
         return tuple(replace(p, solid=p.solid.moved(offset).scaled(factors)) for p in parts)
 
     placed = []
@@ -142,7 +145,7 @@ def fit_to_size(shape: Shape, size: Vector) -> Shape:
     return Shape(place(shape.base), tuple(placed))
 
 
-def _drawn_in(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
+def _drawn_in(parts: Pieces) -> Pieces:
     """Draw in the components of one body: pieces of a group, or else of one name."""
     components: dict[str, list[NDArray[np.float64]]] = {}
     for piece in parts:
@@ -167,7 +170,7 @@ def translate(shape: Shape, offset: Vector, prefix: str = "") -> Shape:
     """Return the shape translated by `offset` (3,) [m]; `prefix` goes before the names of its pieces and movers."""
     dx, dy, dz = (float(v) for v in offset)
 
-    def place(parts: tuple[Piece, ...]) -> tuple[Piece, ...]:
+    def place(parts: Pieces) -> Pieces:
         return tuple(replace(p, name=prefix + p.name, solid=p.solid.moved(offset)) for p in parts)
 
     movers = tuple(

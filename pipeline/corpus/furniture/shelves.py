@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, one_of
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import around, box
 from pipeline.corpus.furniture.storage import case_style, doors_of, front_style
 
@@ -37,7 +37,7 @@ def bookshelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
 BOOK_COLORS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue")
 
 
-def books(rng: np.random.Generator, shape: Shape) -> tuple[Piece, ...]:
+def books(rng: np.random.Generator, shape: Shape) -> Pieces:
     """Return a few rows of books on the boards of open shelves."""
     parts: list[Piece] = []
     palette = [Finish(f"book_{n}", LACQUERS[n], 0.8, density=600) for n in BOOK_COLORS[:4]]

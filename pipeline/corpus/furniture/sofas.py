@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 
 import numpy as np
 
 from pipeline.corpus.furniture.bent import curve, lean, sheet, wall
-from pipeline.corpus.furniture.finishes import Finish, Scheme, one_of
+from pipeline.corpus.furniture.finishes import Scheme, one_of
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
 from pipeline.corpus.furniture.lounge import lounge_chair
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, beam, box, cushion, revolve, rod
-from pipeline.corpus.furniture.upholstery import bolster, channels, seat_cushion, throw_pillow, tufted_panel
+from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Interval, Solid, around, beam, box, cushion, edges, inset, revolve, rod, split
+from pipeline.corpus.furniture.upholstery import bolster, channels, piping, seat_cushion, throw_pillow, tufted_panel
 
 ARMS = {"track": 0.13, "legs": 0.09, "roll": 0.2, "chesterfield": 0.2, "camelback": 0.17, "cloud": 0.22, "u_shape": 0.15}
 LIFTS = {"track": 0.05, "legs": 0.15, "roll": 0.09, "chesterfield": 0.1, "camelback": 0.17, "cloud": 0.03, "u_shape": 0.06}
+
+
+REST = (1.2, 1.45, 1.5, 1.4, 1.2)  # widths along a wooden arm, in those of its post
 
 
 def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -28,8 +30,7 @@ def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     w, d, h = size
     seats = max(1, round((w - 0.4) / (0.72 if form != "cloud" else 0.95)))
     seat = float(rng.uniform(0.40, 0.44)) * min(1.0, h / 0.78) * (0.92 if form == "cloud" else 1.0)
-    arm = ARMS[form] * min(1.0, w / 0.85)
-    lift = LIFTS[form]
+    arm, lift = ARMS[form] * min(1.0, w / 0.85), LIFTS[form]
     deep = min(0.2, 0.22 * d)
     front = -d / 2 + (0.28 * d if form == "u_shape" and w > 2.2 else 0.0)
     parts = feet(rng, scheme, around(w / 2), around(d / 2), lift, form)
@@ -41,71 +42,52 @@ def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
         parts += _returns(w, d, front, lift, base_top, seat, arm, scheme)
     top = min(h - 0.04, seat + 0.2) if form != "chesterfield" else h - 0.08
     rolled = form in ("roll", "chesterfield", "camelback")
-    rear = d / 2 - 0.62 * deep - 0.002 if rolled else d / 2 - 0.012
+    face = d / 2 - 0.62 * deep
+    rear = face - 0.002 if rolled else d / 2 - 0.012
     parts += _arms(form, w, (-d / 2 + 0.012, rear), (base_top if form != "track" else lift + 0.004, top), arm, lift, scheme)
-    behind = around(w / 2 - 0.04) if rolled else inner
-    parts += _back(rng, form, behind, (d / 2 - 0.62 * deep, d / 2), (base_top, h), scheme)
+    parts += _back(rng, form, around(w / 2 - 0.04) if rolled else inner, (face, d / 2), (base_top, h), scheme)
     if form in ("chesterfield", "camelback"):
-        xs = np.linspace(inner[0], inner[1], max(1, seats) + 1)
-        for a, b in itertools.pairwise(xs):
-            parts += seat_cushion(
-                (float(a) + 0.001, float(b) - 0.001),
-                (front, d / 2 - 0.62 * deep - 0.002),
-                (base_top, seat + 0.03),
-                0.04,
-                scheme.soft,
-                _piping(rng, scheme),
-                0.03,
-            )
+        for x in split(inner, seats, 0.001):
+            parts += seat_cushion(x, (front, face - 0.002), (base_top, seat + 0.03), 0.04, scheme.soft, piping(rng, scheme), 0.03)
         return Shape(parts)
-    parts += _cushions(rng, inner, (front, d / 2 - 0.62 * deep), (base_top, seat), h, seats, deep, scheme)
+    parts += _cushions(rng, inner, (front, face), (base_top, seat), h, seats, deep, scheme)
     if w > 1.2:
         parts += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), scheme)
     return Shape(parts)
 
 
-def _piping(rng: np.random.Generator, scheme: Scheme) -> Finish | None:
-    return scheme.second if rng.random() < scheme.manner.piping else None
-
-
-def feet(rng: np.random.Generator, scheme: Scheme, x: Interval, y: Interval, lift: float, form: str) -> tuple[Piece, ...]:
+def feet(rng: np.random.Generator, scheme: Scheme, x: Interval, y: Interval, lift: float, form: str) -> Pieces:
     """Return feet under a frame: the style's legs where there is room for them, else blocks."""
-    kind = (
-        draw_kind(rng, scheme, "plank cross sled hairpin pipe")
-        if form in ("legs", "camelback")
-        else "bun"
-        if scheme.manner.ornament > 0.5 or form == "chesterfield"
-        else "square"
-    )
-    middle_x, middle_y = (x[0] + x[1]) / 2, (y[0] + y[1]) / 2
+    kind = "bun" if scheme.manner.ornament > 0.5 or form == "chesterfield" else "square"
+    if form in ("legs", "camelback"):
+        kind = draw_kind(rng, scheme, "plank cross sled hairpin pipe")
     half = ((x[1] - x[0]) / 2 - 0.08, (y[1] - y[0]) / 2 - 0.08)
-    solids = [s.moved((middle_x, middle_y, 0)) for s in legs(kind, half, lift, 0.045)]
+    solids = legs(kind, half, lift, 0.045)
     if x[1] - x[0] > 1.9 and form != "u_shape":
-        solids += [s.moved((middle_x, middle_y, 0)) for sy in (-1, 1) for s in leg(kind, (0.0, sy * half[1]), (1, sy), lift, 0.045)]
-    return pieces("feet", solids, leg_finish(scheme, kind))
+        solids += [s for sy in (-1, 1) for s in leg(kind, (0.0, sy * half[1]), (1, sy), lift, 0.045)]
+    middle = (x[0] + x[1]) / 2, (y[0] + y[1]) / 2, 0
+    return pieces("feet", [s.moved(middle) for s in solids], leg_finish(scheme, kind))
 
 
-def _arms(form: str, w: float, y: Interval, z: Interval, arm: float, lift: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _arms(form: str, w: float, y: Interval, z: Interval, arm: float, lift: float, scheme: Scheme) -> Pieces:
     """Return both arms; z from the frame's top (or the floor's lift) to the arm's top."""
     solids: list[Solid] = []
-    soft = scheme.manner.soft
-    for s in (-1, 1):
-        lo, hi = (w / 2 - arm, w / 2) if s > 0 else (-w / 2, -w / 2 + arm)
+    for s, (lo, hi) in zip((-1, 1), edges(around(w / 2), arm), strict=True):
         if form in ("roll", "chesterfield", "camelback"):
             r = 0.5 * arm * (0.95 if form != "camelback" else 0.8)
-            core = 0.16 * arm
+            core, x, top = 0.16 * arm, (lo + hi) / 2, z[1] - r
             solids.append(cushion((lo + core * (s > 0), hi - core * (s < 0)), (y[0] + 0.02, y[1]), (z[0], z[1] - 2 * r + 0.012), 0.02, 2))
-            solids.append(rod(((lo + hi) / 2, y[0] + 0.004, z[1] - r), ((lo + hi) / 2, y[1], z[1] - r), r, n=16))
-            solids.append(rod(((lo + hi) / 2, y[0] - 0.004, z[1] - r), ((lo + hi) / 2, y[0] + 0.004, z[1] - r), 0.55 * r, 0.62 * r, n=14))
+            solids.append(rod((x, y[0] + 0.004, top), (x, y[1], top), r, n=16))
+            solids.append(rod((x, y[0] - 0.004, top), (x, y[0] + 0.004, top), 0.55 * r, 0.62 * r, n=14))
         elif form == "cloud":
             solids.append(cushion((lo, hi), y, z, 0.1, 4))
         else:
             low = lift + 0.004 if form == "track" else z[0]
-            solids.append(cushion((lo, hi), y, (low, z[1]), min(soft, 0.4 * arm), 3))
+            solids.append(cushion((lo, hi), y, (low, z[1]), min(scheme.manner.soft, 0.4 * arm), 3))
     return pieces("arms", solids, scheme.soft)
 
 
-def _back(rng: np.random.Generator, form: str, x: Interval, y: Interval, z: Interval, scheme: Scheme) -> tuple[Piece, ...]:
+def _back(rng: np.random.Generator, form: str, x: Interval, y: Interval, z: Interval, scheme: Scheme) -> Pieces:
     """Return the back behind the cushions; a Chesterfield's is buttoned and rolled, a camel's back is arched."""
     low, h = z
     if form == "chesterfield":
@@ -125,29 +107,23 @@ def _back(rng: np.random.Generator, form: str, x: Interval, y: Interval, z: Inte
     return pieces("back", cushion((x[0], x[1]), y, (low, h - 0.04), 0.04, 3), scheme.soft)
 
 
-def _cushions(
-    rng: np.random.Generator, x: Interval, y: Interval, z: Interval, h: float, seats: int, deep: float, scheme: Scheme
-) -> tuple[Piece, ...]:
+def _cushions(rng: np.random.Generator, x: Interval, y: Interval, z: Interval, h: float, seats: int, deep: float, scheme: Scheme) -> Pieces:
     """Return seat and back cushions, one of each per seat (sometimes one long seat); y from the front to the back's face."""
     low, seat = z
-    piping = _piping(rng, scheme)
-    soft = scheme.manner.soft
-    parts: tuple[Piece, ...] = ()
+    cord = piping(rng, scheme)
+    parts: Pieces = ()
     long = seats > 1 and rng.random() < 0.25
-    for a, b in itertools.pairwise(np.linspace(x[0], x[1], (1 if long else seats) + 1)):
-        parts += seat_cushion(
-            (float(a) + 0.003, float(b) - 0.003), (y[0], y[1] - 0.003), (low, seat + 0.022), soft, scheme.soft, piping, 0.028
-        )
-    slope = 0.16
-    backs = []
-    for a, b in itertools.pairwise(np.linspace(x[0], x[1], seats + 1)):
+    for span in split(x, 1 if long else seats, 0.003):
+        parts += seat_cushion(span, (y[0], y[1] - 0.003), (low, seat + 0.022), scheme.manner.soft, scheme.soft, cord, 0.028)
+    slope, backs = 0.16, []
+    at = y[1] - slope * (h - seat) - 0.004
+    for span in split(x, seats, 0.005):
         tall = h - float(rng.uniform(0.0, 0.025))
-        at = y[1] - slope * (h - seat) - 0.004
-        backs.append(cushion((float(a) + 0.005, float(b) - 0.005), (at - 0.75 * deep, at), (seat + 0.024, tall), min(0.06, 0.36 * deep), 3))
+        backs.append(cushion(span, (at - 0.75 * deep, at), (seat + 0.024, tall), min(0.06, 0.36 * deep), 3))
     return parts + pieces("back_cushions", lean(backs, seat + 0.024, slope), scheme.soft)
 
 
-def _pillows(rng: np.random.Generator, x: float, y: float, z: Interval, scheme: Scheme) -> tuple[Piece, ...]:
+def _pillows(rng: np.random.Generator, x: float, y: float, z: Interval, scheme: Scheme) -> Pieces:
     pillows = []
     for s in one_of(rng, ([-1, 1], [-1], [1])):
         size = min(float(rng.uniform(0.38, 0.46)), z[1] - z[0])
@@ -155,58 +131,47 @@ def _pillows(rng: np.random.Generator, x: float, y: float, z: Interval, scheme: 
     return pieces("pillows", pillows, scheme.second)
 
 
-def _returns(w: float, d: float, front: float, lift: float, top: float, seat: float, arm: float, scheme: Scheme) -> tuple[Piece, ...]:
+def _returns(w: float, d: float, front: float, lift: float, top: float, seat: float, arm: float, scheme: Scheme) -> Pieces:
     """Return the seats that come forward at both ends of a sofa in the shape of a U."""
     if front <= -d / 2:
         return ()
-    parts: tuple[Piece, ...] = ()
-    wide = min(0.75, 0.28 * w)
-    for s in (-1, 1):
-        lo, hi = (w / 2 - arm - wide, w / 2 - arm) if s > 0 else (-w / 2 + arm, -w / 2 + arm + wide)
+    parts: Pieces = ()
+    for lo, hi in edges(around(w / 2 - arm), min(0.75, 0.28 * w)):
         parts += pieces("frame_end", cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, top), 0.018, 2), scheme.soft)
-        parts += seat_cushion((lo + 0.003, hi - 0.003), (-d / 2, front - 0.003), (top, seat + 0.022), 0.05, scheme.soft, None, 0.025)
+        parts += seat_cushion(inset((lo, hi), 0.003), (-d / 2, front - 0.003), (top, seat + 0.022), 0.05, scheme.soft, None, 0.025)
     return parts
 
 
-def _frame_sofa(rng: np.random.Generator, size: Size, scheme: Scheme) -> tuple[Piece, ...]:
+def _frame_sofa(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     """Loose cushions in an open frame of wood with laths behind them."""
     w, d, h = size
     x, y = w / 2, d / 2
     seat = 0.42 * min(1.0, h / 0.78)
     t = 0.045 * scheme.manner.slim
     wood = scheme.timber
-    arm = seat + 0.18
-    low = seat - 0.16
+    arm, low = seat + 0.18, seat - 0.16
     solids: list[Solid] = []
+    rest = sheet(curve([(-y + 0.004, arm - 0.014), (0.0, arm - 0.008), (y - 0.01, arm - 0.02)], 2), 0.024, np.array(REST) * t)
     for s in (-1, 1):
         px = s * (x - 0.5 * t - 0.006)
-        solids += [beam((px, -y + 0.04, 0), (px, -y + 0.05, arm - 0.025), t, t), beam((px, y - 0.03, 0), (px, y - 0.06, arm - 0.025), t, t)]
-        rest = curve([(-y + 0.004, arm - 0.014), (0.0, arm - 0.008), (y - 0.01, arm - 0.02)], 2)
-        solids += [q.moved((px - s * 0.006, 0, 0)) for q in sheet(rest, 0.024, [1.2 * t, 1.45 * t, 1.5 * t, 1.4 * t, 1.2 * t])]
+        solids += [beam((px, a, 0), (px, b, arm - 0.025), t, t) for a, b in ((-y + 0.04, -y + 0.05), (y - 0.03, y - 0.06))]
+        solids += [q.moved((px - s * 0.006, 0, 0)) for q in rest]
     inner = around(x - t - 0.012)
-    solids += [box((inner[0], inner[1]), (a, a + 0.026), (low - 0.06, low), 0.004) for a in (-y + 0.03, y - 0.17)]
-    solids += [
-        box(around(0.012, px), (-y + 0.056, y - 0.17), (low - 0.05, low - 0.02), 0.002)
-        for px in np.linspace(inner[0] + 0.1, inner[1] - 0.1, max(2, round(w / 0.5)))
-    ]
+    solids += [box(inner, (a, a + 0.026), (low - 0.06, low), 0.004) for a in (-y + 0.03, y - 0.17)]
+    xs = np.linspace(*inset(inner, 0.1), max(2, round(w / 0.5)))
+    solids += [box(around(0.012, px), (-y + 0.056, y - 0.17), (low - 0.05, low - 0.02), 0.002) for px in xs]
     slope = 0.2
     back = y - 0.04 - slope * (h - seat)
     span = inner[1] - inner[0]
-    laths = [box((inner[0], inner[1]), (back, back + 0.022), (z, z + 0.045), 0.004) for z in (seat - 0.02, h - 0.06)]
-    count = max(4, round(span / 0.16))
-    laths += [
-        box(around(0.011, px), (back + 0.005, back + 0.018), (seat + 0.025, h - 0.06), 0.002)
-        for px in np.linspace(inner[0] + 0.03, inner[1] - 0.03, count)
-    ]
+    laths = [box(inner, (back, back + 0.022), (z, z + 0.045), 0.004) for z in (seat - 0.02, h - 0.06)]
+    xs = np.linspace(*inset(inner, 0.03), max(4, round(span / 0.16)))
+    laths += [box(around(0.011, px), (back + 0.005, back + 0.018), (seat + 0.025, h - 0.06), 0.002) for px in xs]
     parts = pieces("frame", solids, wood) + pieces("laths", lean(laths, seat - 0.02, slope), wood)
     seats = max(1, round(span / 0.65))
-    piping = _piping(rng, scheme)
-    pads = []
-    for a, b in itertools.pairwise(np.linspace(inner[0], inner[1], seats + 1)):
-        parts += seat_cushion(
-            (float(a) + 0.003, float(b) - 0.003), (-y, back - 0.105), (low, seat), scheme.manner.soft, scheme.soft, piping, 0.02
-        )
-        pads.append(cushion((float(a) + 0.005, float(b) - 0.005), (back - 0.1, back - 0.003), (seat - 0.02, h - 0.002), 0.035, 3))
+    cord = piping(rng, scheme)
+    for place in split(inner, seats, 0.003):
+        parts += seat_cushion(place, (-y, back - 0.105), (low, seat), scheme.manner.soft, scheme.soft, cord, 0.02)
+    pads = [cushion(place, (back - 0.1, back - 0.003), (seat - 0.02, h - 0.002), 0.035, 3) for place in split(inner, seats, 0.005)]
     return parts + pieces("back_cushions", lean(pads, seat - 0.02, slope), scheme.soft)
 
 
@@ -214,33 +179,25 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     """Build a sofa along the back and a chaise that reaches forward at one end (`form`: left or right, seen from the front)."""
     w, d, h = size
     style = one_of(rng, ("track", "legs", "cloud"))
-    main = min(0.98, 0.55 * d)
     lift, arm, deep = LIFTS[style], ARMS[style] * 1.1, 0.2
     seat = 0.43 * min(1.0, h / 0.78)
     top = seat - 0.14
     long = min(1.0, 0.36 * w)
-    y0 = d / 2 - main  # front of the main part
-    cx = (-w / 2, -w / 2 + long)
-    parts = feet(rng, scheme, around(w / 2), (y0, d / 2), lift, style) + feet(rng, scheme, cx, (-d / 2, y0 - 0.1), lift, style)
-    parts += pieces("frame", cushion(around(w / 2 - 0.012), (y0 + 0.03, d / 2 - 0.008), (lift, top), 0.018, 2), scheme.soft)
+    y0 = d / 2 - min(0.98, 0.55 * d)  # front of the main part
+    x, cx = around(w / 2), (-w / 2, -w / 2 + long)
+    parts = feet(rng, scheme, x, (y0, d / 2), lift, style) + feet(rng, scheme, cx, (-d / 2, y0 - 0.1), lift, style)
+    parts += pieces("frame", cushion(inset(x, 0.012), (y0 + 0.03, d / 2 - 0.008), (lift, top), 0.018, 2), scheme.soft)
     parts += pieces("frame_chaise", cushion((cx[0] + 0.012, cx[1] - 0.01), (-d / 2 + 0.02, y0 + 0.028), (lift, top), 0.018, 2), scheme.soft)
-    back = (d / 2 - 0.62 * deep, d / 2)
-    parts += _back(rng, style, around(w / 2 - arm), back, (top, h), scheme)
-    rest = seat + 0.2
+    face = d / 2 - 0.62 * deep
+    parts += _back(rng, style, inset(x, arm), (face, d / 2), (top, h), scheme)
     radius = 0.1 if style == "cloud" else min(scheme.manner.soft, 0.4 * arm)
-    sides = [
-        cushion((w / 2 - arm, w / 2), (y0 + 0.012, d / 2 - 0.012), (top, rest), radius, 3),
-        cushion((-w / 2, -w / 2 + arm), (y0 + 0.012, d / 2 - 0.012), (top, rest), radius, 3),
-    ]
+    sides = [cushion(span, (y0 + 0.012, d / 2 - 0.012), (top, seat + 0.2), radius, 3) for span in edges(x, arm)[::-1]]
     parts += pieces("arms", sides, scheme.soft)
     seats = max(1, round((w - long - arm) / 0.75))
-    face = back[0]
     parts += _cushions(rng, (cx[1], w / 2 - arm), (y0, face), (top, seat), h, seats, deep, scheme)
-    piping = _piping(rng, scheme)
-    parts += seat_cushion(
-        (cx[0] + arm + 0.003, cx[1] - 0.003), (y0, face - 0.003), (top, seat + 0.022), scheme.manner.soft, scheme.soft, piping, 0.025
-    )
-    parts += seat_cushion((cx[0], cx[1] - 0.003), (-d / 2, y0 - 0.003), (top, seat + 0.022), scheme.manner.soft, scheme.soft, piping, 0.025)
+    cord = piping(rng, scheme)
+    for left, front, rear in ((cx[0] + arm + 0.003, y0, face - 0.003), (cx[0], -d / 2, y0 - 0.003)):
+        parts += seat_cushion((left, cx[1] - 0.003), (front, rear), (top, seat + 0.022), scheme.manner.soft, scheme.soft, cord, 0.025)
     slope = 0.16
     at = face - slope * (h - seat) - 0.004
     pad = cushion((cx[0] + arm + 0.005, cx[1] - 0.005), (at - 0.75 * deep, at), (seat + 0.024, h - 0.01), 0.06, 3)
@@ -273,9 +230,7 @@ def chaise_longue(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     kind = draw_kind(rng, scheme, "plank cross sled hairpin")
     parts = pieces("legs", legs(kind, (x - 0.06, y - 0.08), 0.15, 0.045), leg_finish(scheme, kind))
     parts += pieces("frame", cushion(around(x - 0.008), around(y - 0.015), (0.15, seat - 0.13), 0.02, 2), scheme.soft)
-    parts += seat_cushion(
-        (-x, x), (-y, y - 0.17), (seat - 0.13, seat + 0.022), scheme.manner.soft, scheme.soft, _piping(rng, scheme), 0.025
-    )
+    parts += seat_cushion((-x, x), (-y, y - 0.17), (seat - 0.13, seat + 0.022), scheme.manner.soft, scheme.soft, piping(rng, scheme), 0.025)
     if form == "recamier":
         pad = tufted_panel((-x, x), (y - 0.17, y - 0.06), (seat - 0.13, h - 0.16), max(2, round(w / 0.18)), 3)
         parts += pieces("back", pad, scheme.soft) + pieces("scroll", bolster((-x, x), y - 0.085, h - 0.085, 0.085), scheme.soft)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -148,6 +149,26 @@ def between(a: float, b: float) -> Interval:
     return (min(a, b), max(a, b))
 
 
+def corners(x: float, y: float) -> list[Spot]:
+    """Return the corners of a rectangle around the origin: (-x, -y), (-x, y), (x, -y), (x, y)."""
+    return [(sx * x, sy * y) for sx in (-1, 1) for sy in (-1, 1)]
+
+
+def edges(x: Interval, t: float) -> tuple[Interval, Interval]:
+    """Return the first and the last `t` of an interval."""
+    return (x[0], x[0] + t), (x[1] - t, x[1])
+
+
+def inset(x: Interval, by: float) -> Interval:
+    """Return the interval, `by` shorter at either end."""
+    return (x[0] + by, x[1] - by)
+
+
+def split(x: Interval, count: int, gap: float = 0.0) -> list[Interval]:
+    """Return `count` equal parts of an interval, `gap` off either end of each."""
+    return [(a + gap, b - gap) for a, b in itertools.pairwise(np.linspace(*x, count + 1).tolist())]
+
+
 def polar(radius: float, angle: float, *height: float) -> tuple[float, ...]:
     """Return the point (2,) at an angle [rad] around the origin, or with a `height` (3,)."""
     return (radius * math.cos(angle), radius * math.sin(angle), *height)
@@ -247,6 +268,11 @@ def slab(outline: NDArray[np.float64], z: Interval, bevel: float = 0.0) -> Solid
     if bevel <= 0:
         return stack([_at(outline, z[0]), _at(outline, z[1])])
     return stack([_at(inner, z[0]), _at(outline, z[0] + bevel), _at(outline, z[1] - bevel), _at(inner, z[1])])
+
+
+def board(x: Interval, y: Interval, z: Interval, radius: float, steps: int, bevel: float = 0.0) -> Solid:
+    """Return a level board over a rectangle whose corners are rounded with `radius`, its rims eased by `bevel` [m]."""
+    return slab(rounded_rectangle(x, y, radius, steps), z, bevel)
 
 
 def circle(radius: float, n: int = 20, centre: Interval = (0.0, 0.0), squash: float = 1.0) -> NDArray[np.float64]:

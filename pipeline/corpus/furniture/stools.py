@@ -10,9 +10,9 @@ import numpy as np
 from pipeline.corpus.furniture.bent import arc, tube, turns, wall
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import around, box, circle, cushion, polar, revolve, rod, rounded_rectangle, slab
-from pipeline.corpus.furniture.upholstery import seat_cushion, tufted_panel, upright_pad
+from pipeline.corpus.furniture.upholstery import piping, seat_cushion, tufted_panel, upright_pad
 
 
 def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -53,7 +53,7 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     seat = h if h < 0.85 else 0.72 * h
     x, y = w / 2, d / 2
     metal = scheme.handle
-    parts: tuple[Piece, ...]
+    parts: Pieces
     top = seat - 0.075
     if form == "pedestal":
         r = min(w, d)
@@ -82,9 +82,7 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
             rod((s * a, -b + 0.012, z + 0.04), (s * a, b - 0.012, z + 0.04), 0.009, n=8) for s in (-1, 1)
         ]
         parts += pieces("foot_rest", rest, metal if kind in METAL else finish)
-    parts += seat_cushion(
-        (-x, x), (-y, 0.84 * y), (top, seat), 0.03, scheme.soft, scheme.second if rng.random() < scheme.manner.piping else None
-    )
+    parts += seat_cushion((-x, x), (-y, 0.84 * y), (top, seat), 0.03, scheme.soft, piping(rng, scheme))
     if h > seat + 0.1:
         parts += pieces("back", upright_pad(rng, scheme, around(0.45 * w), (y - 0.055, y), (seat + 0.05, h)), scheme.soft)
         struts = [box(around(0.012, s * 0.3 * w), (0.85 * y, 0.85 * y + 0.012), (top, seat + 0.05), 0.002) for s in (-1, 1)]
@@ -105,7 +103,7 @@ def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
         profile = [(0.6, 0.0), (0.86, 0.06), (0.97, 0.22), (1.0, 0.5), (0.97, 0.78), (0.86, 0.94), (0.5, 1.0)]
         wool = Finish("knit", scheme.soft.color, 0.95, pattern="knit", density=80)
         return Shape(pieces("pouf", revolve([(a * x, b * h) for a, b in profile], 28, squash=d / w), wool))
-    piping = scheme.second if rng.random() < scheme.manner.piping else None
+    cord = piping(rng, scheme)
     if form == "ottoman":
         feet = legs("bun" if scheme.manner.ornament > 0.5 else "tapered", (x - 0.05, y - 0.05), 0.06, 0.05)
         parts = pieces("feet", feet, scheme.timber) + pieces(
@@ -119,7 +117,7 @@ def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
             low = min(float(s.vertices[:, 2].min()) for s in pad)
             top = [s.moved((0, 0, 0.66 * h - low)) for s in pad]
             return Shape(parts + pieces("seat", top, scheme.soft))
-        return Shape(parts + seat_cushion((-x, x), (-y, y), (0.66 * h, h), 0.05, scheme.soft, piping))
+        return Shape(parts + seat_cushion((-x, x), (-y, y), (0.66 * h, h), 0.05, scheme.soft, cord))
     kind = draw_kind(rng, scheme, "bun blade")
     half = inside(kind, (x, y), h - 0.1, 0.04)
     thick = min(0.12, 0.3 * h) if form == "bench" else 0.07
@@ -134,5 +132,5 @@ def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
         )
     count = max(1, round(w / 0.55)) if form == "bench" else 1
     for a, b in itertools.pairwise(np.linspace(-x, x, count + 1)):
-        parts += seat_cushion((float(a) + 0.001, float(b) - 0.001), (-y, y), (h - thick, h), 0.04, scheme.soft, piping)
+        parts += seat_cushion((float(a) + 0.001, float(b) - 0.001), (-y, y), (h - thick, h), 0.04, scheme.soft, cord)
     return Shape(parts)

@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.corpus.furniture.casework import Case, Cell, Column, Feet, case
 from pipeline.corpus.furniture.finishes import DARK_GLASS, LACQUERS, Finish, Scheme, pick, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, HandleStyle, PanelStyle
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Interval, rod
 
 
@@ -89,7 +89,7 @@ def _sliding_wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: S
     return Shape(shape.base + _rails(shape, scheme), shape.movers)
 
 
-def _rails(shape: Shape, scheme: Scheme) -> tuple[Piece, ...]:
+def _rails(shape: Shape, scheme: Scheme) -> Pieces:
     """Return a hanging rail under every hat shelf."""
     rails: list[Piece] = []
     for piece in shape.base:

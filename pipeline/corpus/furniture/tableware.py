@@ -9,8 +9,8 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, prism, tube
 from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, revolve, ring, slab, walls
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, inset, revolve, ring, slab, walls
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
 BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue", "barn_red", "emerald", "greige", "blush", "black")
@@ -120,19 +120,19 @@ def binding(rng: np.random.Generator) -> Finish:
     return Finish(f"binding_{name}", shade(rng, LACQUERS[name], 0.12), 0.6, density=700)
 
 
-def flat_book(rng: np.random.Generator, x: Interval, y: Interval, z: Interval) -> tuple[Piece, ...]:
+def flat_book(rng: np.random.Generator, x: Interval, y: Interval, z: Interval) -> Pieces:
     """Return a book that lies flat: two boards, a spine at the left, the block of paper set back between them."""
     t = min(0.003, 0.2 * (z[1] - z[0]))
-    boards = [box(x, y, (z[0], z[0] + t)), box(x, y, (z[1] - t, z[1])), box((x[0], x[0] + t), y, (z[0] + t, z[1] - t))]
+    boards = [box(x, y, (z[0], z[0] + t)), box(x, y, (z[1] - t, z[1])), box((x[0], x[0] + t), y, inset(z, t))]
     parts = pieces("cover", boards, binding(rng))
-    return parts + pieces("pages", box((x[0] + t, x[1] - 0.004), (y[0] + 0.004, y[1] - 0.004), (z[0] + t, z[1] - t)), PAPER)
+    return parts + pieces("pages", box((x[0] + t, x[1] - 0.004), inset(y, 0.004), inset(z, t)), PAPER)
 
 
 def book(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a book that lies, stands upright, or lies open."""
     w, d, h = size
     if form == "open":
-        parts: tuple[Piece, ...] = ()
+        parts: Pieces = ()
         t = min(0.0035, 0.2 * h)
         parts += pieces("cover", box(around(w / 2), around(d / 2), (0.0, t)), binding(rng))
         for s in (-1, 1):
@@ -147,7 +147,7 @@ def book(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
 def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a pile of books, or a row of upright ones."""
     w, d, h = size
-    parts: tuple[Piece, ...] = ()
+    parts: Pieces = ()
     if form == "row":
         x = -w / 2
         while x < w / 2 - 0.012:

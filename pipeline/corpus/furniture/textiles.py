@@ -9,7 +9,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import band
 from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, FABRICS, Finish, Pattern, Scheme, cover, pick, shade
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Solid, around, box, circle, pillow, ring, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.styles import CLASSIC, ORIENTAL
 
@@ -60,7 +60,7 @@ def curtain(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     return Shape(tuple(replace(p, finish=sheer) if p.finish is cloth else p for p in parts))
 
 
-def _panel(start: float, end: float, d: float, h: float, cloth: Finish) -> tuple[Piece, ...]:
+def _panel(start: float, end: float, d: float, h: float, cloth: Finish) -> Pieces:
     """Return one pleated panel between two x [m], deeper folds the more it is drawn aside."""
     wide = abs(end - start)
     folds = max(3, round(wide / 0.11))

@@ -7,22 +7,27 @@ import itertools
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish, Scheme
-from pipeline.corpus.furniture.shape import Piece, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, cushion, pillow, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.shape import Pieces, pieces
+from pipeline.corpus.furniture.solids import Interval, Solid, around, cushion, inset, pillow, rod, rounded_rectangle, slab
 
 SEAM = 0.007  # height of a piping
 
 
+def piping(rng: np.random.Generator, scheme: Scheme) -> Finish | None:
+    """Draw what a cushion's seams are piped with, if they are."""
+    return scheme.second if rng.random() < scheme.manner.piping else None
+
+
 def seat_cushion(
     x: Interval, y: Interval, z: Interval, radius: float, cloth: Finish, piping: Finish | None = None, crown: float = 0.02
-) -> tuple[Piece, ...]:
+) -> Pieces:
     """Return a seat cushion with a swelling top; with `piping` a cord of that finish runs around its upper edge."""
     crown = min(crown, 0.3 * (z[1] - z[0]))
     if piping is None:
         return pieces("cushion", cushion(x, y, z, radius, 3, crown), cloth)
     cut = z[0] + 0.62 * (z[1] - crown - z[0])
     r = min(radius, 0.4 * (z[1] - crown - cut))
-    inner_x, inner_y = (x[0] + 0.004, x[1] - 0.004), (y[0] + 0.004, y[1] - 0.004)
+    inner_x, inner_y = inset(x, 0.004), inset(y, 0.004)
     cord = slab(rounded_rectangle(x, y, radius, 3), (cut, cut + SEAM), 0.002)
     lower = slab(rounded_rectangle(inner_x, inner_y, radius, 3), (z[0], cut), 0.006)
     upper = cushion(inner_x, inner_y, (cut + SEAM, z[1]), min(r, 0.03), 2, crown)
@@ -71,7 +76,7 @@ def throw_pillow(at: tuple[float, float, float], size: float, tilt: float, yaw: 
     return solid.moved((at[0], at[1], at[2] - float(solid.vertices[:, 2].min())))
 
 
-def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: Finish, *, foot: bool = True) -> tuple[Piece, ...]:
+def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: Finish, *, foot: bool = True) -> Pieces:
     """Return a cover that lies on a mattress at `z` and hangs over its sides (and foot) by `drop`; x, y are the mattress's."""
     side = 0.55 * thick
     solids = [cushion((x[0] - side, x[1] + side), (y[0] - side * foot, y[1]), (z, z + thick), 0.45 * thick, 3, 0.25 * thick)]

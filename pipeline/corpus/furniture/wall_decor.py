@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Finish, Pattern, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.panels import Rect, frame
-from pipeline.corpus.furniture.shape import Piece, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Interval, Solid, around, box, circle, revolve, ring, rod, slab, standing
 from pipeline.style import Color
 
@@ -40,7 +40,7 @@ def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
         return Shape(pieces("canvas", box(around(w / 2), (-back, back), (0.0, h), 0.003), art))
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
     spans = [(-w / 2, w / 2)] if form == "framed" else [(-w / 2, -0.02 * w), (0.02 * w, w / 2)]
-    parts: tuple[Piece, ...] = ()
+    parts: Pieces = ()
     for k, (x0, x1) in enumerate(spans):
         wide = x1 - x0
         rim = 0.018 + 0.02 * scheme.manner.ornament

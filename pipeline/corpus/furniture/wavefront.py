@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import Finish
-from pipeline.corpus.furniture.shape import Piece
+from pipeline.corpus.furniture.shape import Piece, Pieces
 from pipeline.corpus.furniture.solids import Face, Solid, Topology, merge_solids, normals, topology
 from pipeline.corpus.furniture.texture import Atlas, Corners, srgb
 
@@ -26,7 +26,7 @@ class Group:
 
     name: str
     material: str
-    pieces: tuple[Piece, ...]
+    pieces: Pieces
 
 
 @dataclass(frozen=True, slots=True)
