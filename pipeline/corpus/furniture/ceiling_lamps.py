@@ -43,7 +43,7 @@ def pendant_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     }
     tall = min(0.66 * h, share.get(kind, 0.6) * w)
     parts = shade(rng, scheme, kind, w / 2, (0.0, tall))
-    return Shape(parts + pieces("cord", cord((0, 0), (tall - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal))
+    return Shape(parts + pieces("cord", cord((tall - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal))
 
 
 def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
@@ -113,7 +113,7 @@ def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
             parts += shade(rng, scheme, "bell", 0.175 * r, (z + 0.03, z + 0.03 + 0.3 * r), at, 12) + pieces(
                 "candle", rod((*at, z + 0.016), (*at, z + 0.03 + 0.26 * r), 0.008, n=6), metal
             )
-    return parts + pieces("cord", cord((0, 0), (body - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal)
+    return parts + pieces("cord", cord((body - 0.002, h - 0.024)), metal) + pieces("rose", rose(h), metal)
 
 
 def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
@@ -137,7 +137,7 @@ def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
         parts += pieces("rods", rod(tuple(np.array([0, 0, middle]) + 0.85 * r * unit), tuple(at - 0.9 * r * unit), 0.005, n=6), metal)
         globe = revolve([polar(r, p) for p in np.linspace(-1.4, 1.4, 7)], 12)
         parts += pieces("globes", [s.moved(at) for s in globe], GLOW)
-    return parts + pieces("cord", cord((0, 0), (middle + 0.8 * r, h - 0.024)), metal) + pieces("rose", rose(h), metal)
+    return parts + pieces("cord", cord((middle + 0.8 * r, h - 0.024)), metal) + pieces("rose", rose(h), metal)
 
 
 def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

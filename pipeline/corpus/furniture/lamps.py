@@ -49,22 +49,10 @@ def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> 
     w, _, h = size
     r, metal = w / 2, scheme.handle
     if scheme.manner.ornament > 0.5:
-        steps = [
-            (0.6 * r, 0.0),
-            (0.6 * r, 0.03),
-            (0.05, 0.05),
-            (0.02, 0.12),
-            (0.032, 0.3),
-            (0.016, 0.36 * h),
-            (0.03, 0.42 * h),
-            (0.016, 0.46 * h),
-            (0.02, 0.6 * h),
-            (0.01, h - tall),
-            (0.008, h - 0.7 * tall),
-        ]
+        steps = [(0.6 * r, 0.0), (0.6 * r, 0.03), (0.05, 0.05), (0.02, 0.12), (0.032, 0.3), (0.016, 0.36 * h), (0.03, 0.42 * h)]
+        steps += [(0.016, 0.46 * h), (0.02, 0.6 * h), (0.01, h - tall), (0.008, h - 0.7 * tall)]
         return pieces("pole", revolve(steps, 16), scheme.timber if rng.random() < 0.5 else metal)
-    pole = revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20)
-    return pieces("pole", pole, metal)
+    return pieces("pole", revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20), metal)
 
 
 def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
@@ -72,15 +60,13 @@ def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pie
     w, d, h = size
     r, metal = w / 2, scheme.handle
     parts = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
-    for k, z in enumerate((0.62, 0.78, 0.93)):
-        q = 0.36 * r
+    q = 0.36 * r
+    for k, z in enumerate((0.62 * h, 0.78 * h, 0.93 * h)):
         a = 2.2 * k + 0.4
         x, y = (r - q) * math.cos(a), (min(r, d / 2) - q) * math.sin(a)
-        parts += shade(rng, scheme, "globe", q, (z * h - q, min(z * h + q, h)), (x, y), 14)
-        u = np.array([x, y]) / max(math.hypot(x, y), 1e-6)
-        parts += pieces(
-            "arms", rod((0.01 * u[0], 0.01 * u[1], z * h), (x - q * u[0] * 0.99, y - q * u[1] * 0.99, z * h), 0.006, n=6), metal
-        )
+        parts += shade(rng, scheme, "globe", q, (z - q, min(z + q, h)), (x, y), 14)
+        u = np.array([x, y, 0]) / max(math.hypot(x, y), 1e-6)
+        parts += pieces("arms", rod(0.01 * u + (0, 0, z), (x, y, z) - q * u * 0.99, 0.006, n=6), metal)
     return parts
 
 
@@ -93,25 +79,25 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         plate = box(around(0.5 * w), (back - 0.018, back), (0.36 * h, 0.64 * h), 0.004)
         r = min(0.16 * w, 0.3 * d)
         y = -d / 2 + r
-        tube_ = [rod((0, y, 0.03 * h), (0, y, 0.97 * h), 0.85 * r, n=14)]
+        light = rod((0, y, 0.03 * h), (0, y, 0.97 * h), 0.85 * r, n=14)
         caps = [rod((0, y, z), (0, y, z + 0.03 * h), r, n=14) for z in (0.0, 0.97 * h)]
         arm = box((-0.012, 0.012), (y + 0.85 * r, back - 0.018), (0.48 * h, 0.52 * h), 0.002)
-        return Shape(pieces("plate", plate, metal) + pieces("caps", [*caps, arm], metal) + pieces("tube", tube_, GLOW))
+        return Shape(pieces("plate", plate, metal) + pieces("caps", [*caps, arm], metal) + pieces("tube", light, GLOW))
     if form == "globe":
         r = min(w / 2, 0.42 * d)
         y = -d / 2 + r
-        parts = pieces("plate", standing([slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)], (0, back, 0.5 * h)), metal)
+        disc = standing([slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)], (0, back, 0.5 * h))
         neck = rod((0, back - 0.016, 0.5 * h), (0, y + 0.95 * r, 0.5 * h), 0.009, n=8)
-        return Shape(parts + pieces("neck", neck, metal) + shade(rng, scheme, "globe", r, around(min(r, 0.5 * h), 0.5 * h), (0.0, y), 18))
+        globe = shade(rng, scheme, "globe", r, around(min(r, 0.5 * h), 0.5 * h), (0.0, y), 18)
+        return Shape(pieces("plate", disc, metal) + pieces("neck", neck, metal) + globe)
     r = min(w / 2, 0.4 * d) if form == "shade" else min(0.24 * w, 0.4 * d)
     wide = 0.2 * w if form != "shade" or r > 0.4 * w else 0.5 * w
     parts = pieces("plate", box((-wide, wide), (back - 0.016, back), (0.0, 0.7 * h), 0.004), metal)
-    tall = 0.55 * h
     for s in (0,) if form == "shade" else (-1, 1):
         x, y = s * (w / 2 - r), -d / 2 + r
         swing = curve([(0.1 * x, back - 0.016, 0.34 * h), (0.6 * x, 0.5 * (y + back), 0.22 * h), (x, y, 0.26 * h), (x, y, 0.42 * h)], 2)
         parts += pieces("arm", tube(swing, 0.0065, 6), metal)
-        parts += shade(rng, scheme, "pleated" if scheme.manner.ornament > 0.5 else "drum", r, (h - tall, h), (x, y), 16)
+        parts += shade(rng, scheme, "pleated" if scheme.manner.ornament > 0.5 else "drum", r, (h - 0.55 * h, h), (x, y), 16)
     return Shape(parts)
 
 
@@ -120,47 +106,36 @@ def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     w, d, h = size
     metal = scheme.handle
     r = w / 2
-    if form == "desk" and d > w:
-        return turned_along(table_lamp(rng, form, (d, w, h), scheme))
     if form == "desk":
-        q = min(0.5 * d, 0.34 * w)
-        x0 = -w / 2 + q
-        foot = revolve([(q, 0.0), (q, 0.014), (0.2 * q, 0.022)], 20, (x0, 0.0))
-        elbow, tip = (x0 - 0.25 * q, 0.0, 0.6 * h), (w / 2 - 0.28 * d, 0.0, h - 0.02)
-        arm = [
-            rod((x0, 0, 0.022), (elbow[0], 0, elbow[2] - 0.012), 0.007, n=8),
-            rod((elbow[0] + 0.01, 0, elbow[2] + 0.003), tip, 0.007, n=8),
-        ]
-        arm.append(rod((elbow[0], -0.014, elbow[2]), (elbow[0], 0.014, elbow[2]), 0.012, n=10))
-        head = shade(rng, scheme, "cone", 0.28 * d, (h - 0.02 - 0.42 * d, h - 0.02), (w / 2 - 0.28 * d, 0.0), 16)
-        return Shape(pieces("foot", foot, metal) + pieces("arm", arm, metal) + head)
+        return turned_along(table_lamp(rng, form, (d, w, h), scheme)) if d > w else Shape(_desk_lamp(rng, size, scheme))
     if form == "mushroom":
         foot = revolve([(0.5 * r, 0.0), (0.42 * r, 0.1 * h), (0.34 * r, 0.45 * h), (0.4 * r, 0.6 * h)], 20)
-        cap = revolve(
-            curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2).tolist(), 28
-        )
+        bend = curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2)
+        cap = revolve(bend.tolist(), 28)
         return Shape(pieces("stem", foot, scheme.front) + pieces("cap", cap, GLOW if rng.random() < 0.5 else scheme.front))
     if form == "globe":
-        base = pieces(
-            "foot",
-            revolve([(0.6 * r, 0.0), (0.6 * r, 0.02), (0.3 * r, 0.03), (0.2 * r, h - 1.95 * r)], 20),
-            metal if rng.random() < 0.6 else scheme.stone,
-        )
+        foot = revolve([(0.6 * r, 0.0), (0.6 * r, 0.02), (0.3 * r, 0.03), (0.2 * r, h - 1.95 * r)], 20)
+        base = pieces("foot", foot, metal if rng.random() < 0.6 else scheme.stone)
         return Shape(base + shade(rng, scheme, "globe", r, (max(0.05, h - 1.95 * r), h)))
     tall = 0.42 * h
     stem = h - tall
-    body = (
-        curve([(0.45, 0.0), (0.5, 0.03), (0.62, 0.2), (0.5, 0.4), (0.16, 0.52)], 2).tolist()
-        if rng.random() < 0.5
-        else [(0.5, 0.0), (0.5, 0.03), (0.14, 0.06), (0.26, 0.16), (0.34, 0.28), (0.14, 0.42), (0.2, 0.48)]
-    )
-    profile = [(a * r, b * h) for a, b in body] + [
-        (0.01, min(0.54 * h, stem - 0.01)),
-        (0.006, h - 0.45 * tall - 0.072 if tall > 0.16 else h - 0.5 * tall),
-    ]
-    base = pieces(
-        "foot", revolve(profile, 20), scheme.timber if rng.random() < 0.4 else replace(scheme.front, name="pottery", roughness=0.2)
-    )
-    return Shape(
-        base + shade(rng, scheme, shade_word(rng, scheme, "globe cage lantern paper crystal mushroom cylinder dome"), r, (stem, h))
-    )
+    belly = curve([(0.45, 0.0), (0.5, 0.03), (0.62, 0.2), (0.5, 0.4), (0.16, 0.52)], 2).tolist()
+    turning = [(0.5, 0.0), (0.5, 0.03), (0.14, 0.06), (0.26, 0.16), (0.34, 0.28), (0.14, 0.42), (0.2, 0.48)]
+    profile = [(a * r, b * h) for a, b in (belly if rng.random() < 0.5 else turning)]
+    profile += [(0.01, min(0.54 * h, stem - 0.01)), (0.006, h - 0.45 * tall - 0.072 if tall > 0.16 else h - 0.5 * tall)]
+    finish = scheme.timber if rng.random() < 0.4 else replace(scheme.front, name="pottery", roughness=0.2)
+    kind = shade_word(rng, scheme, "globe cage lantern paper crystal mushroom cylinder dome")
+    return Shape(pieces("foot", revolve(profile, 20), finish) + shade(rng, scheme, kind, r, (stem, h)))
+
+
+def _desk_lamp(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+    """Build a round foot, an arm with an elbow and a cone at its end, along x."""
+    w, d, h = size
+    q = min(0.5 * d, 0.34 * w)
+    x0, tip = -w / 2 + q, w / 2 - 0.28 * d
+    foot = revolve([(q, 0.0), (q, 0.014), (0.2 * q, 0.022)], 20, (x0, 0.0))
+    x, z = x0 - 0.25 * q, 0.6 * h  # of the elbow
+    arm = [rod((x0, 0, 0.022), (x, 0, z - 0.012), 0.007, n=8), rod((x + 0.01, 0, z + 0.003), (tip, 0.0, h - 0.02), 0.007, n=8)]
+    arm.append(rod((x, -0.014, z), (x, 0.014, z), 0.012, n=10))
+    head = shade(rng, scheme, "cone", 0.28 * d, (h - 0.02 - 0.42 * d, h - 0.02), (tip, 0.0), 16)
+    return pieces("foot", foot, scheme.handle) + pieces("arm", arm, scheme.handle) + head
