@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
 from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, pillow, polar, revolve, ring, rod, slab
+from pipeline.corpus.furniture.solids import (
+    Solid,
+    around,
+    box,
+    circle,
+    corners,
+    cushion,
+    pillow,
+    polar,
+    revolve,
+    ring,
+    rod,
+    slab,
+    standing,
+)
 from pipeline.corpus.furniture.tableware import glaze
 from pipeline.corpus.furniture.wall_decor import INKS, frame_boards
 from pipeline.style import Color
@@ -44,13 +56,11 @@ def photo_frame(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     art = Finish("photo", paper, 0.4, pattern=pick(rng, "art_hills art_circles art_blocks"), density=400, second=ink)  # type: ignore[arg-type]
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
     rim, front = 0.1 * w, -d / 2 + 0.006
-    face = frame_boards(w, h, rim, around(0.006, front))
-    sheet = box(around(w / 2 - rim), (front - 0.001, front + 0.004), (rim, h - rim))
     slope = 0.5 * d / h
-    leant = [lean([s], 0.0, slope)[0] for s in face]
-    strut = box(around(0.1 * w), (d / 2 - 0.008, d / 2), (0.0, 0.75 * h))
-    strut = lean([strut], 0.0, -0.45 * d / h)[0]
-    return Shape(pieces("frame", leant, frame) + pieces("photo", lean([sheet], 0.0, slope), art) + pieces("strut", strut, SHELL))
+    boards = lean(frame_boards(w, h, rim, around(0.006, front)), 0.0, slope)
+    sheet = lean([box(around(w / 2 - rim), (front - 0.001, front + 0.004), (rim, h - rim))], 0.0, slope)
+    strut = lean([box(around(0.1 * w), (d / 2 - 0.008, d / 2), (0.0, 0.75 * h))], 0.0, -0.45 * d / h)
+    return Shape(pieces("frame", boards, frame) + pieces("photo", sheet, art) + pieces("strut", strut, SHELL))
 
 
 def candle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -59,17 +69,17 @@ def candle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     r = w / 2
     wax = Finish("wax", shade(rng, one_of(rng, WAX), 0.08), 0.5, density=900)
     wick = pieces("wick", rod((0, 0, 0.93 * h), (0, 0, h), 0.0015, n=6), SHELL)
-    if form == "stick":
-        foot = revolve([(r, 0.0), (0.9 * r, 0.04 * h), (0.2 * r, 0.09 * h), (0.16 * r, 0.42 * h)], 16)
-        cup = revolve([(0.16 * r, 0.42 * h), (0.4 * r, 0.5 * h)], 12)
-        return Shape(
-            pieces("stick", foot + cup, scheme.handle) + pieces("wax", slab(circle(0.24 * r, 12), (0.5 * h, 0.94 * h)), wax) + wick
-        )
     if form == "glass":
         body = slab(circle(0.86 * r, 16), (0.02 * h, 0.62 * h))
         return Shape(pieces("wax", body, wax) + pieces("glass", ring((r, r), (0.87 * r, 0.87 * r), (0.0, 0.9 * h), 12), CLEAR) + wick)
-    dish = revolve([(0.8 * r, 0.0), (r, 0.05 * h), (0.95 * r, 0.08 * h)], 16)
-    return Shape(pieces("dish", dish, scheme.handle) + pieces("wax", slab(circle(0.74 * r, 16), (0.08 * h, 0.94 * h), 0.004), wax) + wick)
+    if form == "stick":
+        stand = revolve([(r, 0.0), (0.9 * r, 0.04 * h), (0.2 * r, 0.09 * h), (0.16 * r, 0.42 * h)], 16)
+        stand += revolve([(0.16 * r, 0.42 * h), (0.4 * r, 0.5 * h)], 12)
+        body = slab(circle(0.24 * r, 12), (0.5 * h, 0.94 * h))
+    else:
+        stand = revolve([(0.8 * r, 0.0), (r, 0.05 * h), (0.95 * r, 0.08 * h)], 16)
+        body = slab(circle(0.74 * r, 16), (0.08 * h, 0.94 * h), 0.004)
+    return Shape(pieces("stick" if form == "stick" else "dish", stand, scheme.handle) + pieces("wax", body, wax) + wick)
 
 
 def tray(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -79,12 +89,12 @@ def tray(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     if form == "round":
         floor = slab(circle(0.49 * w, 24), (0.0, 0.25 * h))
         return Shape(pieces("floor", floor, finish) + pieces("rim", ring((w / 2, w / 2), (0.48 * w, 0.48 * w), (0.25 * h, h), 16), finish))
-    t = 0.012
+    half, rim = 0.006, (0.2 * h, 0.7 * h)
+    x, y = w / 2 - half, d / 2 - half
     solids = [box(around(w / 2), around(d / 2), (0.0, 0.2 * h))]
-    solids += [box(around(w / 2), around(t / 2, s * (d / 2 - t / 2)), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
-    x = w / 2 - t / 2
-    solids += [box(around(t / 2, s * x), around(d / 2 - t), (0.2 * h, 0.7 * h)) for s in (-1, 1)]
-    grips = [box(around(0.006, s * x), (-0.06, 0.06), (0.7 * h, h), 0.002) for s in (-1, 1)]
+    solids += [box(around(w / 2), around(half, s * y), rim) for s in (-1, 1)]
+    solids += [box(around(half, s * x), around(y - half), rim) for s in (-1, 1)]
+    grips = [box(around(half, s * x), (-0.06, 0.06), (0.7 * h, h), 0.002) for s in (-1, 1)]
     return Shape(pieces("tray", solids, finish) + pieces("grips", grips, scheme.handle))
 
 
@@ -93,25 +103,25 @@ def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     w, _, h = size
     r = w / 2
     color = LACQUERS[pick(rng, "white sage blush ivory terracotta dusty_blue anthracite")]
-    label = Finish("label", (0.76, 0.74, 0.68), 0.7, density=900)
     if form == "pump":
         body = revolve([(0.96 * r, 0.0), (r, 0.02 * h), (r, 0.6 * h), (0.4 * r, 0.7 * h)], 14)
         head = [rod((0, 0, 0.7 * h), (0, 0, 0.9 * h), 0.12 * r, n=8), slab(circle(0.34 * r, 10), (0.9 * h, h))]
-        spout = box((-0.9 * r, 0.0), around(0.1 * r), (0.93 * h, 0.98 * h))
+        head.append(box((-0.9 * r, 0.0), around(0.1 * r), (0.93 * h, 0.98 * h)))
         soap = Finish("soap", shade(rng, color, 0.1), 0.3, density=900)
-        return Shape(pieces("body", body, soap) + pieces("pump", [*head, spout], scheme.handle))
+        return Shape(pieces("body", body, soap) + pieces("pump", head, scheme.handle))
     if form == "shampoo":
         finish = Finish("plastic", shade(rng, color, 0.1), 0.35, density=900)
-        flask = [slab(circle(r, 14, squash=0.62), z) for z in ((0.0, 0.25 * h), (0.6 * h, 0.86 * h))]
-        cap = slab(circle(0.6 * r, 12, squash=0.8), (0.86 * h, h), 0.003)
+        body = [slab(circle(r, 14, squash=0.62), z) for z in ((0.0, 0.25 * h), (0.6 * h, 0.86 * h))]
+        top = pieces("cap", slab(circle(0.6 * r, 12, squash=0.8), (0.86 * h, h), 0.003), SHELL)
         band = slab(circle(r, 14, squash=0.62), (0.25 * h, 0.6 * h))
-        return Shape(pieces("body", flask, finish) + pieces("cap", cap, SHELL) + pieces("label", band, label))
-    glass = Finish("dark_glass", (0.02, 0.05, 0.025) if form == "wine" else (0.30, 0.24, 0.05), 0.08, density=1400)
-    body = revolve([(0.95 * r, 0.0), (r, 0.02 * h), (r, 0.18 * h)], 14)
-    body += revolve([(r, 0.48 * h), (r, 0.6 * h), (0.7 * r, 0.68 * h), (0.32 * r, 0.76 * h)], 14)
-    neck = slab(circle(0.32 * r, 12), (0.76 * h, h), 0.002)
-    band = slab(circle(r, 14), (0.18 * h, 0.48 * h))
-    return Shape(pieces("body", body, glass) + pieces("neck", neck, glass) + pieces("label", band, label))
+    else:
+        finish = Finish("dark_glass", (0.02, 0.05, 0.025) if form == "wine" else (0.30, 0.24, 0.05), 0.08, density=1400)
+        body = revolve([(0.95 * r, 0.0), (r, 0.02 * h), (r, 0.18 * h)], 14)
+        body += revolve([(r, 0.48 * h), (r, 0.6 * h), (0.7 * r, 0.68 * h), (0.32 * r, 0.76 * h)], 14)
+        top = pieces("neck", slab(circle(0.32 * r, 12), (0.76 * h, h), 0.002), finish)
+        band = slab(circle(r, 14), (0.18 * h, 0.48 * h))
+    label = Finish("label", (0.76, 0.74, 0.68), 0.7, density=900)
+    return Shape(pieces("body", body, finish) + top + pieces("label", band, label))
 
 
 def canister(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -134,38 +144,22 @@ def kettle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     w, d, h = size
     r = 0.5 * min(d, 0.75 * w)
     x = -w / 2 + r
-    steel = (
-        Finish("steel", (0.62, 0.62, 0.62), 0.25, 0.9, density=900)
-        if rng.random() < 0.6
-        else Finish("enamel", shade(rng, LACQUERS[pick(rng, "white sage navy barn_red mint")]), 0.3, density=900)
-    )
+    finish = Finish("steel", (0.62, 0.62, 0.62), 0.25, 0.9, density=900)
+    if rng.random() >= 0.6:
+        finish = Finish("enamel", shade(rng, LACQUERS[pick(rng, "white sage navy barn_red mint")]), 0.3, density=900)
     tall = 0.86 * h if form == "electric" else 0.7 * h
-    profile = [(r, 0.0), (r, 0.1 * h), (0.94 * r, 0.4 * h), (0.72 * r, tall)]
-    body = [s.moved((x, 0, 0)) for s in revolve(profile, 18)]
+    body = revolve([(r, 0.0), (r, 0.1 * h), (0.94 * r, 0.4 * h), (0.72 * r, tall)], 18, (x, 0.0))
     top = [
         slab(circle(0.66 * r, 14, (x, 0.0)), (tall, tall + 0.02), 0.004),
         slab(circle(0.16 * r, 10, (x, 0.0)), (tall + 0.02, tall + 0.04)),
     ]
     spout = rod((x - 0.75 * r, 0, 0.55 * tall), (-w / 2 - 0.01, 0, 0.86 * tall), 0.022, 0.012, 8)
+    bow, thick = [(x - 0.7 * r, tall), (x - 0.5 * r, h - 0.012), (x + 0.5 * r, h - 0.012), (x + 0.7 * r, tall)], 0.009
     if form == "electric":
-        grip = tube(
-            curve(
-                [
-                    (x + 0.7 * r, 0, 0.9 * tall),
-                    (w / 2 - 0.01, 0, 0.86 * tall),
-                    (w / 2 - 0.012, 0, 0.3 * tall),
-                    (x + 0.9 * r, 0, 0.16 * tall),
-                ],
-                2,
-            ),
-            0.011,
-            6,
-        )
-    else:
-        grip = tube(
-            curve([(x - 0.7 * r, 0, tall), (x - 0.5 * r, 0, h - 0.012), (x + 0.5 * r, 0, h - 0.012), (x + 0.7 * r, 0, tall)], 2), 0.009, 6
-        )
-    return Shape(pieces("body", [*body, spout], steel) + pieces("lid", top, SHELL) + pieces("grip", grip, SHELL))
+        side = [(w / 2 - 0.01, 0.86 * tall), (w / 2 - 0.012, 0.3 * tall)]
+        bow, thick = [(x + 0.7 * r, 0.9 * tall), *side, (x + 0.9 * r, 0.16 * tall)], 0.011
+    grip = tube(curve([(px, 0, z) for px, z in bow], 2), thick, 6)
+    return Shape(pieces("body", [*body, spout], finish) + pieces("lid", top, SHELL) + pieces("grip", grip, SHELL))
 
 
 def cutting_board(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -218,70 +212,65 @@ def toy(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
         return Shape(pieces("ball", [s.moved((0, 0, 0.92 * r)) for s in revolve(profile, 16)], one_of(rng, bright)))
     if form == "blocks":
         b = h / 3
-        spots = [(-0.6 * b, 0.0, 0), (0.6 * b, 0.1 * b, 0), (0.0, 0.0, 1), (0.05 * b, 0.0, 2)]
-        return Shape(tuple(p for k, (x, y, level) in enumerate(spots) for p in pieces(
-            f"block_{k}", box(around(b / 2, x), around(b / 2, y), (level * b, (level + 1) * b - 0.0005), 0.003), bright[k])))  # fmt: skip
+        parts: Pieces = ()
+        for k, (x, y, level) in enumerate(((-0.6 * b, 0.0, 0), (0.6 * b, 0.1 * b, 0), (0.0, 0.0, 1), (0.05 * b, 0.0, 2))):
+            block = box(around(b / 2, x), around(b / 2, y), (level * b, (level + 1) * b - 0.0005), 0.003)
+            parts += pieces(f"block_{k}", block, bright[k])
+        return Shape(parts)
     if form == "car":
-        body = [
-            cushion(around(w / 2), around(0.4 * d), (0.16 * h, 0.6 * h), 0.02, 2),
-            cushion((-0.28 * w, 0.3 * w), around(0.34 * d), (0.6 * h, h), 0.02, 2),
-        ]
-        wheel = slab(circle(0.18 * h, 12), around(0.06 * d)).turned("x", math.pi / 2)
-        wheels = [wheel.moved((sx * 0.3 * w, sy * 0.42 * d, 0.18 * h)) for sx in (-1, 1) for sy in (-1, 1)]
+        body = [cushion(around(w / 2), around(0.4 * d), (0.16 * h, 0.6 * h), 0.02, 2)]
+        body.append(cushion((-0.28 * w, 0.3 * w), around(0.34 * d), (0.6 * h, h), 0.02, 2))
+        wheel = slab(circle(0.18 * h, 12), around(0.06 * d))
+        wheels = [s for x, y in corners(0.3 * w, 0.42 * d) for s in standing([wheel], (x, y, 0.18 * h))]
         return Shape(pieces("body", body, one_of(rng, bright)) + pieces("wheels", wheels, SHELL))
     fur = Finish("fur", shade(rng, (0.36, 0.22, 0.10) if rng.random() < 0.6 else (0.66, 0.58, 0.48)), 0.95, pattern="boucle", density=80)
-    trunk = [
+    bear = [
         pillow(around(0.26 * w), (-0.2 * d, 0.35 * d), (0.0, 0.58 * h), 3),
         pillow(around(0.24 * w), around(0.26 * d), (0.52 * h, 0.95 * h), 3),
     ]
-    ears = [cushion(around(0.07 * w, s * 0.17 * w), (-0.03 * d, 0.05 * d), (0.84 * h, h), 0.012, 2) for s in (-1, 1)]
-    arms = [cushion(around(0.1 * w, s * 0.32 * w), (-0.25 * d, 0.05 * d), (0.22 * h, 0.5 * h), 0.025, 2) for s in (-1, 1)]
-    legs = [cushion(around(0.11 * w, s * 0.24 * w), (-0.5 * d, 0.0), (0.0, 0.2 * h), 0.02, 2) for s in (-1, 1)]
-    return Shape(pieces("bear", [*trunk, *ears, *arms, *legs], fur))
+    bear += [cushion(around(0.07 * w, s * 0.17 * w), (-0.03 * d, 0.05 * d), (0.84 * h, h), 0.012, 2) for s in (-1, 1)]  # ears
+    bear += [cushion(around(0.1 * w, s * 0.32 * w), (-0.25 * d, 0.05 * d), (0.22 * h, 0.5 * h), 0.025, 2) for s in (-1, 1)]  # arms
+    bear += [cushion(around(0.11 * w, s * 0.24 * w), (-0.5 * d, 0.0), (0.0, 0.2 * h), 0.02, 2) for s in (-1, 1)]  # legs
+    return Shape(pieces("bear", bear, fur))
 
 
 def pen_cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a cup with pens in it, round or square."""
     w, _, h = size
     r, tall = w / 2, 0.55 * h
-    cup = [slab(circle(r, 14), (0.0, tall))] if form == "round" else [box((-r, r), (-r, r), (0.0, tall), 0.003)]
+    cup = slab(circle(r, 14), (0.0, tall)) if form == "round" else box((-r, r), (-r, r), (0.0, tall), 0.003)
     parts = pieces("cup", cup, scheme.front if rng.random() < 0.5 else scheme.handle)
     for k, a in enumerate(turns(4, float(rng.uniform(0, 1)))):
-        tip = polar(0.8 * r, a, h * float(rng.uniform(0.86, 1.0)))
-        pen = rod(polar(0.4 * r, a, tall), tip, 0.0045, n=6)
-        parts += pieces(
-            f"pen_{k}", pen, Finish("pen", shade(rng, LACQUERS[pick(rng, "black navy coral mustard emerald")]), 0.4, density=900)
-        )
+        pen = rod(polar(0.4 * r, a, tall), polar(0.8 * r, a, h * float(rng.uniform(0.86, 1.0))), 0.0045, n=6)
+        ink = shade(rng, LACQUERS[pick(rng, "black navy coral mustard emerald")])
+        parts += pieces(f"pen_{k}", pen, Finish("pen", ink, 0.4, density=900))
     return Shape(parts)
 
 
 def alarm_clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build an alarm clock: a round one on four feet, or a box with figures."""
     w, d, h = size
-    face = Finish("dial", (0.82, 0.81, 0.78), 0.5, pattern="dial", density=900, second=(0.03, 0.03, 0.03))
     if form == "box":
         case = box(around(w / 2), (-d / 2 + 0.002, d / 2), (0.0, h), 0.006)
         figures = box(around(0.42 * w), (-d / 2, -d / 2 + 0.002), (0.2 * h, 0.8 * h))
-        return Shape(
-            pieces("case", case, scheme.timber) + pieces("figures", figures, Finish("figures", (0.02, 0.10, 0.08), 0.2, density=900))
-        )
+        green = Finish("figures", (0.02, 0.10, 0.08), 0.2, density=900)
+        return Shape(pieces("case", case, scheme.timber) + pieces("figures", figures, green))
     r = min(w, 0.86 * h) / 2
     z = h - r
-    case = slab(circle(r, 20), (0.0, 0.7 * d)).turned("x", math.pi / 2).moved((0, 0.35 * d, z))
-    dial = slab(circle(0.88 * r, 20), (0.0, 0.004)).turned("x", math.pi / 2).moved((0, -0.35 * d, z))
-    feet = [rod((s * 0.6 * r, t * 0.3 * d, 0.0), (s * 0.45 * r, t * 0.2 * d, z - 0.8 * r), 0.006, n=6) for s in (-1, 1) for t in (-1, 1)]
-    return Shape(pieces("case", [case, *feet], scheme.handle) + pieces("dial", dial, face))
+    body = standing([slab(circle(r, 20), (0.0, 0.7 * d))], (0, 0.35 * d, z))
+    body += [rod((s * 0.6 * r, t * 0.3 * d, 0.0), (s * 0.45 * r, t * 0.2 * d, z - 0.8 * r), 0.006, n=6) for s, t in corners(1, 1)]
+    dial = standing([slab(circle(0.88 * r, 20), (0.0, 0.004))], (0, -0.35 * d, z))
+    face = Finish("dial", (0.82, 0.81, 0.78), 0.5, pattern="dial", density=900, second=(0.03, 0.03, 0.03))
+    return Shape(pieces("case", body, scheme.handle) + pieces("dial", dial, face))
 
 
 def tissue_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a box of tissues, oblong or a cube, with one drawn out."""
     w, d, h = size
     x = w / 2 if form == "flat" else min(w, d) / 2
-    finish = (
-        scheme.timber
-        if rng.random() < 0.4
-        else Finish("card", shade(rng, LACQUERS[pick(rng, "white sage blush dusty_blue greige")]), 0.7, density=300)
-    )
+    finish = scheme.timber
+    if rng.random() >= 0.4:
+        finish = Finish("card", shade(rng, LACQUERS[pick(rng, "white sage blush dusty_blue greige")]), 0.7, density=300)
     body = box((-x, x), around(d / 2), (0.0, 0.7 * h), 0.003)
     sheet = blades(np.array([(0, 0, 0.69 * h), (0.004, 0, 0.69 * h)]), np.array([(-0.02, 0.006, h), (0.025, -0.006, 0.94 * h)]), 0.07)
     return Shape(pieces("box", body, finish) + pieces("tissue", sheet, PAPER))
@@ -291,57 +280,41 @@ def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     """Build a board with hooks, a coat or a bag on some of them; the back is at the wall (+y)."""
     w, d, h = size
     back = d / 2
-    board = box(around(w / 2), (back - 0.018, back), (h - 0.1, h), 0.003)
     count = max(4, round(w / 0.14))
-    xs = np.linspace(-w / 2 + 0.06, w / 2 - 0.06, count)
+    xs = np.linspace(-w / 2 + 0.06, w / 2 - 0.06, count).tolist()
     hooks: list[Solid] = []
-    for x in xs.tolist():
-        hooks += [
-            rod((x, back - 0.018, h - 0.05), (x, back - 0.07, h - 0.05), 0.006, n=6),
-            rod((x, back - 0.066, h - 0.055), (x, back - 0.07, h - 0.02), 0.007, n=6),
-        ]
-    parts = pieces("board", board, scheme.timber) + pieces("hooks", hooks, scheme.handle)
-    if form == "bare":
-        return Shape(parts)
-    for k in (1, count - 2):
-        x = float(xs[k])
-        cloth = Finish(
-            "coat",
-            shade(rng, FABRICS[pick(rng, "charcoal indigo_cloth taupe_cloth rust_cloth grey_cloth")], 0.1),
-            0.9,
-            pattern="weave",
-            density=200,
-        )
-        bag = cushion(around(0.1, x), (-d / 2, back - 0.02), (0.0, 0.55 * h), 0.03, 3)
-        strap = [box(around(0.006, x + s * 0.05), (-0.005, 0.005), (0.5 * h, h - 0.06)) for s in (-1, 1)]
-        parts += pieces(f"bag_{k}", [bag, *strap, box(around(0.056, x), (-0.005, 0.005), (h - 0.06, h - 0.045))], cloth)
+    for x in xs:
+        hooks.append(rod((x, back - 0.018, h - 0.05), (x, back - 0.07, h - 0.05), 0.006, n=6))
+        hooks.append(rod((x, back - 0.066, h - 0.055), (x, back - 0.07, h - 0.02), 0.007, n=6))
+    parts = pieces("board", box(around(w / 2), (back - 0.018, back), (h - 0.1, h), 0.003), scheme.timber)
+    parts += pieces("hooks", hooks, scheme.handle)
+    for k in (1, count - 2) if form != "bare" else ():
+        x = xs[k]
+        color = shade(rng, FABRICS[pick(rng, "charcoal indigo_cloth taupe_cloth rust_cloth grey_cloth")], 0.1)
+        bag = [cushion(around(0.1, x), (-d / 2, back - 0.02), (0.0, 0.55 * h), 0.03, 3)]
+        bag += [box(around(0.006, x + s * 0.05), (-0.005, 0.005), (0.5 * h, h - 0.06)) for s in (-1, 1)]
+        bag.append(box(around(0.056, x), (-0.005, 0.005), (h - 0.06, h - 0.045)))
+        parts += pieces(f"bag_{k}", bag, Finish("coat", color, 0.9, pattern="weave", density=200))
     return Shape(parts)
 
 
 def potted_herb(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a small plant in a pot: a succulent's rosette, a tuft of herbs, or a trailing one."""
     w, _, h = size
-    tall = {"succulent": 0.62, "herb": 0.45, "grass": 0.4}[form] * h
+    tall, count, rise = {"succulent": (0.62 * h, 14, 0.6), "herb": (0.45 * h, 26, 1.0), "grass": (0.4 * h, 22, 1.0)}[form]
     r = 0.36 * w
     pot = glaze(rng) if rng.random() < 0.7 else CERAMIC
-    body = revolve([(0.74 * r, 0.0), (r, tall)], 14)
-    soil = slab(circle(0.86 * r, 12), (tall, tall + 0.002))
+    parts = pieces("pot", revolve([(0.74 * r, 0.0), (r, tall)], 14), pot)
+    parts += pieces("soil", slab(circle(0.86 * r, 12), (tall, tall + 0.002)), SHELL)
     green = Finish("leaf", shade(rng, LEAF.color, 0.25), 0.6, pattern="leaf", density=300)
-    count, reach, rise = {"succulent": (14, 0.5, 0.6), "herb": (26, 0.5, 1.0), "grass": (22, 0.5, 1.0)}[form]
     angle = np.arange(count) * 2.4
     share = (np.arange(count) + 1) / count
-    out = (1 - 0.7 * share) * reach * w if form != "herb" else rng.uniform(0.1, 1.0, count) * reach * w
-    up = tall + (h - tall) * rise * (0.35 + 0.65 * share)
-    tips = np.column_stack([out * np.cos(angle), out * np.sin(angle), up])
+    out = (1 - 0.7 * share) * 0.5 * w if form != "herb" else rng.uniform(0.1, 1.0, count) * 0.5 * w
+    tips = np.column_stack([out * np.cos(angle), out * np.sin(angle), tall + (h - tall) * rise * (0.35 + 0.65 * share)])
     if form == "herb":
         roots = tips * (0.55, 0.55, 1.0) - (0.0, 0.0, 0.03)
         stems = [rod((0.2 * x, 0.2 * y, tall), (x, y, z), 0.002, n=4) for x, y, z in roots[::3].tolist()]
-        return Shape(
-            pieces("pot", body, pot)
-            + pieces("soil", soil, SHELL)
-            + pieces("stems", stems, green)
-            + pieces("leaves", blades(roots, tips, 0.32 * w), green)
-        )
+        return Shape(parts + pieces("stems", stems, green) + pieces("leaves", blades(roots, tips, 0.32 * w), green))
     roots = np.column_stack([0.2 * r * np.cos(angle), 0.2 * r * np.sin(angle), np.full(count, tall)])
-    leaves = blades(roots, tips, 0.22 * w if form == "succulent" else 0.06 * w, thick=0.014 if form == "succulent" else 0.003)
-    return Shape(pieces("pot", body, pot) + pieces("soil", soil, SHELL) + pieces("leaves", leaves, green))
+    width, thick = (0.22 * w, 0.014) if form == "succulent" else (0.06 * w, 0.003)
+    return Shape(parts + pieces("leaves", blades(roots, tips, width, thick=thick), green))
