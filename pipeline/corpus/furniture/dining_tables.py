@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
 
@@ -14,7 +13,21 @@ from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import Finish, Scheme
 from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, beam, box, circle, polar, revolve, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.solids import (
+    Interval,
+    Solid,
+    Spot,
+    around,
+    beam,
+    box,
+    circle,
+    polar,
+    revolve,
+    rod,
+    rounded_rectangle,
+    slab,
+    split,
+)
 from pipeline.corpus.furniture.storage import case_style, front_style
 
 
@@ -53,30 +66,23 @@ def legged_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, withou
     finish = leg_finish(scheme, kind)
     thick = (0.062 if h > 0.6 else 0.046) * scheme.manner.slim
     room = 0.16 * min(w, d) if d > 0.9 * w else 0.05
-    outer = (w / 2 - room * 0.6, d / 2 - room * 0.6)
-    if kind in ("hairpin", "sled", "cross", "plank", "blade", "pipe"):
-        half = inside(kind, (outer[0] - (0.06 * w if kind in WIDE else 0), outer[1]), h - t, thick)
-        return Shape(parts + pieces("legs", legs(kind, half, h - t, thick), finish) + _brace(kind, half, h - t, finish))
-    drop = (0.075 if h > 0.6 else 0.045) + 0.02 * scheme.manner.ornament
-    half = inside(kind, outer, h - t, thick)
+    framed = kind in ("hairpin", "sled", "cross", "plank", "blade", "pipe")
+    half = inside(kind, (w / 2 - room * 0.6 - (0.06 * w if kind in WIDE else 0), d / 2 - room * 0.6), h - t, thick)
     parts += pieces("legs", legs(kind, half, h - t, thick), finish)
-    parts += pieces("apron", rails(half, (h - t - drop, h - t), 0.5 * thick + (0.004 if kind not in ("turned", "fluted") else 0.0)), finish)
+    if kind in WIDE:  # a beam under the top keeps side frames apart
+        parts += pieces("beam", box(around(half[0] - 0.032), (-0.02, 0.02), (h - t - 0.045, h - t - 0.001), 0.002), finish)
+    if not framed:
+        drop = (0.075 if h > 0.6 else 0.045) + 0.02 * scheme.manner.ornament
+        gap = 0.5 * thick + (0.004 if kind not in ("turned", "fluted") else 0.0)
+        parts += pieces("apron", rails(half, (h - t - drop, h - t), gap), finish)
     return Shape(parts)
 
 
 def rails(half: Spot, z: Interval, gap: float) -> list[Solid]:
     """Return four rails between the tops of legs at (+-half), each `gap` short of a leg's middle."""
     x, y = half
-    return [box(around(x - gap), around(0.01, s * y), z, 0.002) for s in (-1, 1)] + [
-        box(around(0.01, s * x), around(y - gap), z, 0.002) for s in (-1, 1)
-    ]
-
-
-def _brace(kind: str, half: Spot, h: float, finish: Finish) -> Pieces:
-    """Return what keeps side frames apart: a beam under the top, or nothing."""
-    if kind not in WIDE:
-        return ()
-    return pieces("beam", box(around(half[0] - 0.032), (-0.02, 0.02), (h - 0.045, h - 0.001), 0.002), finish)
+    along = [box(around(x - gap), around(0.01, s * y), z, 0.002) for s in (-1, 1)]
+    return along + [box(around(0.01, s * x), around(y - gap), z, 0.002) for s in (-1, 1)]
 
 
 def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -86,78 +92,54 @@ def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     if form == "legs":
         return legged_table(rng, size, scheme, without="block")
     material = top_finish(rng, scheme, stone=1.8)
+    under = h - t
     if form in ("tulip", "drum"):
-        parts = pieces("top", top(circle(w / 2, 36), (h - t, h), scheme), material)
+        parts = pieces("top", top(circle(w / 2, 36), (under, h), scheme), material)
         if form == "drum":
-            return Shape(parts + fluted_drum(0.3 * w, h - t, scheme))
-        return Shape(parts + pieces("pedestal", trumpet(0.32 * w, h - t), scheme.front))
-    parts = pieces("top", top(outline(rng, scheme, w, d), (h - t, h), scheme), material)
-    solids: list[Solid] = []
-    x = 0.32 * w
+            return Shape(parts + fluted_drum(0.3 * w, under, scheme))
+        return Shape(parts + pieces("pedestal", trumpet(0.32 * w, under), scheme.front))
+    parts = pieces("top", top(outline(rng, scheme, w, d), (under, h), scheme), material)
     if form == "bar":
         return Shape(parts + _bar(size, t, scheme))
     if form == "cross":
-        bars = [((s * 0.30 * w, -0.32 * d), (-s * 0.14 * w, 0.3 * d)) for s in (-1, 1)]
-        for k, ((x0, y0), (x1, y1)) in enumerate(bars):
-            for s in (-1, 1):
-                dx = s * (0.035 if k == 0 else 0.105) * 1.0
-                solids.append(
-                    beam(
-                        (s * abs(x0) + dx, y0 if k == 0 else y1, 0),
-                        (s * abs(x1) * 0.4 + dx, y1 if k == 0 else y0, h - t - 0.02),
-                        0.06,
-                        0.05,
-                    )
-                )
-        solids.append(box(around(0.33 * w), around(0.36 * d), (h - t - 0.02, h - t), 0.003))
+        solids = [
+            beam((s * (0.30 * w + dx), y, 0), (s * (0.14 * w * 0.4 + dx), y_top, under - 0.02), 0.06, 0.05)
+            for dx, y, y_top in ((0.035, -0.32 * d, 0.3 * d), (0.105, 0.3 * d, -0.32 * d))
+            for s in (-1, 1)
+        ]
+        solids.append(box(around(0.33 * w), around(0.36 * d), (under - 0.02, under), 0.003))
         return Shape(parts + pieces("cross", solids, scheme.handle if scheme.manner.tube > 0.3 else scheme.timber))
-    thick = 0.05
-    solids += [box(around(thick / 2, s * x), around(0.4 * d), (0, h - t), 0.006) for s in (-1, 1)]
-    solids.append(box(around(x - thick / 2), (-0.016, 0.016), (0.55 * h, h - t), 0.003))
+    x, half = 0.32 * w, 0.025
+    solids = [box(around(half, s * x), around(0.4 * d), (0, under), 0.006) for s in (-1, 1)]
+    solids.append(box(around(x - half), (-0.016, 0.016), (0.55 * h, under), 0.003))
     return Shape(parts + pieces("slabs", solids, scheme.body))
 
 
 def trumpet(radius: float, height: float) -> list[Solid]:
     """Return a foot like an upturned trumpet: a thin disc that rises in one sweep into a slender stem."""
-    steps = (
-        (1.0, 0.0),
-        (1.0, 0.008),
-        (0.8, 0.02),
-        (0.55, 0.045),
-        (0.34, 0.1),
-        (0.2, 0.22),
-        (0.15, 0.42),
-        (0.15, 0.66),
-        (0.2, 0.82),
-        (0.36, 0.95),
-        (0.5, 1.0),
-    )
-    return revolve([(a * radius, b * height) for a, b in steps], 24)
+    disc = ((1.0, 0.0), (1.0, 0.008), (0.8, 0.02), (0.55, 0.045), (0.34, 0.1), (0.2, 0.22))
+    stem = ((0.15, 0.42), (0.15, 0.66), (0.2, 0.82), (0.36, 0.95), (0.5, 1.0))
+    return revolve([(a * radius, b * height) for a, b in (*disc, *stem)], 24)
 
 
 def fluted_drum(radius: float, height: float, scheme: Scheme) -> Pieces:
     """Return a round base clad in upright half-round staves."""
-    core = revolve([(radius, 0.0), (radius, height)], 24)
     r = math.pi * radius / 30
     staves = [rod(polar(radius + 0.85 * r, a, 0.0), polar(radius + 0.85 * r, a, height), 0.95 * r, n=6) for a in turns(30)]
-    return pieces("drum", core, scheme.body) + pieces("staves", staves, scheme.body)
+    return pieces("drum", revolve([(radius, 0.0), (radius, height)], 24), scheme.body) + pieces("staves", staves, scheme.body)
 
 
 def _bar(size: Size, t: float, scheme: Scheme) -> Pieces:
     """Return a counter's front of upright boards on a plinth, a shelf behind it and a foot rail before it."""
     w, d, h = size
-    xs = np.linspace(-0.46 * w, 0.46 * w, max(5, round(w / 0.14)) + 1)
-    y = -0.22 * d
-    boards = [box((a + 0.001, b - 0.001), (y, y + 0.02), (0.06, h - t), 0.003) for a, b in itertools.pairwise(xs)]
-    sides = [box(around(0.012, s * 0.45 * w), (y + 0.02, 0.42 * d), (0.0, h - t), 0.002) for s in (-1, 1)]
-    inner = around(0.45 * w - 0.012)
-    parts = pieces("front", boards, scheme.front) + pieces("sides", sides, scheme.body)
-    parts += pieces("shelf", [box(inner, (y + 0.02, 0.4 * d), (z, z + 0.02)) for z in (0.1, 0.48 * h)], scheme.body)
-    parts += pieces("plinth", box(around(0.45 * w), (y + 0.004, y + 0.02), (0.0, 0.06)), scheme.handle)
-    z = 0.17
-    rail = [rod((-0.45 * w, y - 0.1, z), (0.45 * w, y - 0.1, z), 0.014, n=10)] + [
-        rod((s * 0.36 * w, y, z), (s * 0.36 * w, y - 0.087, z), 0.009, n=8) for s in (-1, 0, 1)
-    ]
+    y, half = -0.22 * d, 0.45 * w
+    boards = [box(x, (y, y + 0.02), (0.06, h - t), 0.003) for x in split(around(0.46 * w), max(5, round(w / 0.14)), 0.001)]
+    sides = [box(around(0.012, s * half), (y + 0.02, 0.42 * d), (0.0, h - t), 0.002) for s in (-1, 1)]
+    shelves = [box(around(half - 0.012), (y + 0.02, 0.4 * d), (z, z + 0.02)) for z in (0.1, 0.48 * h)]
+    parts = pieces("front", boards, scheme.front) + pieces("sides", sides, scheme.body) + pieces("shelf", shelves, scheme.body)
+    parts += pieces("plinth", box((-half, half), (y + 0.004, y + 0.02), (0.0, 0.06)), scheme.handle)
+    rail = [rod((-half, y - 0.1, 0.17), (half, y - 0.1, 0.17), 0.014, n=10)]
+    rail += [rod((s * 0.36 * w, y, 0.17), (s * 0.36 * w, y - 0.087, 0.17), 0.009, n=8) for s in (-1, 0, 1)]
     return parts + pieces("rail", rail, scheme.handle)
 
 

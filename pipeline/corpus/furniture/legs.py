@@ -7,12 +7,27 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.bent import curve, tube
+from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import Finish, Scheme, one_of
-from pipeline.corpus.furniture.solids import Solid, Spot, around, beam, box, revolve, rod, stack
+from pipeline.corpus.furniture.solids import Solid, Spot, around, beam, between, box, inset, polar, revolve, rod, split, stack
 
 METAL = frozenset({"hairpin", "pipe", "blade", "sled", "cross"})
 WIDE = frozenset({"sled", "cross", "plank"})  # forms that join the two legs of a side
+
+
+# Round legs that splay: by which share of their height, by how much at most [m], and their radii at foot and top in thicknesses.
+RAKES = {"splayed": (0.12, 0.06, 0.3, 0.52), "dowel": (0.03, 0.02, 0.42, 0.42), "ming": (0.03, 0.02, 0.42, 0.42)}
+# A turned leg and a cabriole one, from the floor up: (radius, height), (height, how far out, radius), in thicknesses and heights.
+TURNED = ((0.34, 0.0), (0.5, 0.05), (0.3, 0.12), (0.44, 0.42), (0.56, 0.68), (0.34, 0.76), (0.54, 0.8), (0.54, 0.84))
+CABRIOLE = (
+    (0.0, 0.62, 0.42),
+    (0.05, 0.55, 0.4),
+    (0.16, 0.12, 0.24),
+    (0.4, 0.02, 0.28),
+    (0.66, 0.36, 0.42),
+    (0.84, 0.5, 0.52),
+    (1.0, 0.12, 0.56),
+)
 
 
 def leg_finish(scheme: Scheme, kind: str) -> Finish:
@@ -37,10 +52,9 @@ def legs(kind: str, half: Spot, height: float, thick: float) -> list[Solid]:
 
 def inside(kind: str, outer: Spot, height: float, thick: float) -> Spot:
     """Return where the tops of legs stand so that all of them stays within (+-outer), however far they splay."""
-    if kind == "splayed":
-        reach = min(0.12 * height, 0.06) + 0.3 * thick
-    elif kind in ("dowel", "ming"):
-        reach = min(0.03 * height, 0.02) + 0.42 * thick
+    if kind in RAKES:
+        share, most, radius = RAKES[kind][:3]
+        reach = min(share * height, most) + radius * thick
     elif kind == "hairpin":
         reach = 0.05 * height + 0.01
     elif kind == "cabriole":
@@ -58,23 +72,21 @@ def leg(kind: str, at: Spot, out: Spot, height: float, thick: float) -> list[Sol
     if kind in ("square", "block"):
         r = t / 2 if kind == "square" else 0.7 * t
         return [box(around(r, x), around(r, y), (0, h), 0.003)]
-    if kind == "tapered":
-        return [beam((x, y, 0), (x, y, h), t, t, 0.5)]
-    if kind == "splayed":
-        reach = min(0.12 * h, 0.06)
-        return [rod((x + sx * reach, y + sy * reach, 0), (x, y, h), 0.3 * t, 0.52 * t, 10)]
-    if kind in ("dowel", "ming"):
-        reach = min(0.03 * h, 0.02)
-        return [rod((x + sx * reach, y + sy * reach, 0), (x, y, h), 0.42 * t, n=10)]
-    return _ORNATE.get(kind, _turned_leg)(x, y, sx, sy, h, t)
+    if kind in ("tapered", "blade"):
+        wide, deep, taper = (t, t, 0.5) if kind == "tapered" else (0.016, max(0.7 * t, 0.022), 0.8)
+        return [beam((x, y, 0), (x, y, h), wide, deep, taper)]
+    if kind in RAKES:
+        share, most, foot, top = RAKES[kind]
+        reach = min(share * h, most)
+        return [rod((x + sx * reach, y + sy * reach, 0), (x, y, h), foot * t, top * t, 10)]
+    if kind in ("turned", "bun"):
+        return _bun(x, y, h, t) if h < 0.16 else _turned_leg(x, y, h, t)
+    return _ORNATE[kind](x, y, sx, sy, h, t)
 
 
-def _turned_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
-    if h < 0.16:
-        return _bun(x, y, sx, sy, h, t)
-    profile = [(0.34, 0.0), (0.5, 0.05), (0.3, 0.12), (0.44, 0.42), (0.56, 0.68), (0.34, 0.76), (0.54, 0.8), (0.54, 0.84)]
+def _turned_leg(x: float, y: float, h: float, t: float) -> list[Solid]:
     block = box(around(0.52 * t, x), around(0.52 * t, y), (0.84 * h, h), 0.002)
-    return [*revolve([(r * t, z * h) for r, z in profile], 12, (x, y)), block]
+    return [*revolve([(r * t, z * h) for r, z in TURNED], 12, (x, y)), block]
 
 
 def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
@@ -86,41 +98,21 @@ def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) ->
 
 
 def _cabriole(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
-    d = np.array([sx, sy]) / math.sqrt(2)
-    points, radii = [], []
-    for share, out, r in (
-        (0.0, 0.62, 0.42),
-        (0.05, 0.55, 0.4),
-        (0.16, 0.12, 0.24),
-        (0.4, 0.02, 0.28),
-        (0.66, 0.36, 0.42),
-        (0.84, 0.5, 0.52),
-        (1.0, 0.12, 0.56),
-    ):
-        reach = out * min(t, 0.35 * h) * 1.25
-        points.append((x + d[0] * reach, y + d[1] * reach, share * h))
-        radii.append(r * t)
-    return tube(points, radii, 8)
+    reach = min(t, 0.35 * h) * 1.25 / math.sqrt(2)
+    points = [(x + sx * out * reach, y + sy * out * reach, share * h) for share, out, _ in CABRIOLE]
+    return tube(points, [r * t for _, _, r in CABRIOLE], 8)
 
 
 def _hairpin(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
     r, spread, reach = 0.0055, 0.055 + 0.06 * h, 0.05 * h
     x0, y0 = x + sx * reach, y + sy * reach
-    rods = [
-        rod((x - sx * spread, y, h - 0.003), (x0 - sx * 0.0065, y0 + sy * 0.004, 0.006), r, n=6),
-        rod((x, y - sy * spread, h - 0.003), (x0 + sx * 0.004, y0 - sy * 0.0065, 0.006), r, n=6),
-    ]
-    plate = box(
-        (min(x, x - sx * spread) - r, max(x, x - sx * spread) + r),
-        (min(y, y - sy * spread) - r, max(y, y - sy * spread) + r),
-        (h - 0.003, h),
-    )
-    return [*rods, plate, revolve([(0.013, 0.0), (0.013, 0.006)], 10, (x0, y0))[0]]
+    a = rod((x - sx * spread, y, h - 0.003), (x0 - sx * 0.0065, y0 + sy * 0.004, 0.006), r, n=6)
+    b = rod((x, y - sy * spread, h - 0.003), (x0 + sx * 0.004, y0 - sy * 0.0065, 0.006), r, n=6)
+    plate = box(inset(between(x, x - sx * spread), -r), inset(between(y, y - sy * spread), -r), (h - 0.003, h))
+    return [a, b, plate, revolve([(0.013, 0.0), (0.013, 0.006)], 10, (x0, y0))[0]]
 
 
-def _bun(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
-    if h >= 0.16:
-        return _turned_leg(x, y, sx, sy, h, t)
+def _bun(x: float, y: float, h: float, t: float) -> list[Solid]:
     r = max(0.6 * t, 0.028)
     return revolve([(0.55 * r, 0.0), (r, 0.25 * h), (r, 0.5 * h), (0.6 * r, 0.78 * h), (0.85 * r, 0.86 * h), (0.85 * r, h)], 14, (x, y))
 
@@ -137,16 +129,12 @@ def _horse(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list
 
 
 def _bamboo(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
-    count = max(1, round(h / 0.16))
     solids, node, r = [], 0.008, 0.38 * t
-    edges = np.linspace(0, h, count + 1)
-    for k in range(count):
-        low = edges[k] + (node if k else 0.0)
-        solids.append(rod((x, y, low), (x, y, edges[k + 1]), r, n=10))
+    for k, (low, high) in enumerate(split((0, h), max(1, round(h / 0.16)))):
+        solids.append(rod((x, y, low + (node if k else 0.0)), (x, y, high), r, n=10))
         if k:
-            solids += revolve(
-                [(r, edges[k]), (1.22 * r, edges[k] + 0.35 * node), (1.22 * r, edges[k] + 0.65 * node), (r, edges[k] + node)], 10, (x, y)
-            )
+            rings = [(r, low), (1.22 * r, low + 0.35 * node), (1.22 * r, low + 0.65 * node), (r, low + node)]
+            solids += revolve(rings, 10, (x, y))
     return solids
 
 
@@ -156,30 +144,18 @@ def _pipe(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[
     return [*flange, rod((x, y, 0.005), (x, y, h - 0.005), r, n=10)]
 
 
-def _blade(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
-    return [beam((x, y, 0), (x, y, h), 0.016, max(0.7 * t, 0.022), 0.8)]
-
-
-_ORNATE = {
-    "fluted": _fluted_leg, "cabriole": _cabriole, "hairpin": _hairpin, "bun": _bun, "horse": _horse, "bamboo": _bamboo, "pipe": _pipe, "blade": _blade,
-}  # fmt: skip
+_ORNATE = {"fluted": _fluted_leg, "cabriole": _cabriole, "hairpin": _hairpin, "horse": _horse, "bamboo": _bamboo, "pipe": _pipe}
 
 
 def _frame(kind: str, x: float, y: float, h: float, t: float) -> list[Solid]:
     """Return what stands at one side: a sled, a cross, or a plank, in the plane of that x."""
     if kind == "plank":
-        r = 0.4 * t
-        return [box(around(r, x), around(y + 0.3 * t), (0, h), 0.003)]
+        return [box(around(0.4 * t, x), around(y + 0.3 * t), (0, h), 0.003)]
     s = min(0.5 * t, 0.012 + 0.01 * h)
     if kind == "cross":
-        a = beam((x - s, -y, 0), (x - s, y, h), 2 * s, 2.2 * s)
-        b = beam((x + s, y, 0), (x + s, -y, h), 2 * s, 2.2 * s)
-        return [a, b]
-    return [
-        box(around(s, x), around(y + s), (0, 1.6 * s), 0.002),
-        box(around(s, x), around(s, -y), (1.6 * s, h), 0.002),
-        box(around(s, x), around(s, y), (1.6 * s, h), 0.002),
-    ]
+        return [beam((x + q * s, q * y, 0), (x + q * s, -q * y, h), 2 * s, 2.2 * s) for q in (-1, 1)]
+    posts = [box(around(s, x), around(s, q * y), (1.6 * s, h), 0.002) for q in (-1, 1)]
+    return [box(around(s, x), around(y + s), (0, 1.6 * s), 0.002), *posts]
 
 
 def pedestal(rng: np.random.Generator, scheme: Scheme, radius: float, height: float) -> list[Solid]:
@@ -191,33 +167,14 @@ def pedestal(rng: np.random.Generator, scheme: Scheme, radius: float, height: fl
         steps = ((1.0, 0.0), (1.0, 0.012), (0.62, 0.035), (0.36, 0.1), (0.2, 0.24), (0.14, 0.45), (0.14, 0.7), (0.22, 0.88), (0.42, 1.0))
         return revolve([(a * r, b * h) for a, b in steps], 24)
     if kind == 1:
-        return revolve(
-            [
-                (r, 0.0),
-                (r, 0.012),
-                (0.94 * r, 0.02),
-                (0.05 + 0.05 * r, 0.022),
-                (0.05 + 0.05 * r, h - 0.012),
-                (0.6 * r, h - 0.01),
-                (0.6 * r, h),
-            ],
-            24,
-        )
+        stem, plate = 0.05 + 0.05 * r, 0.6 * r
+        return revolve([(r, 0.0), (r, 0.012), (0.94 * r, 0.02), (stem, 0.022), (stem, h - 0.012), (plate, h - 0.01), (plate, h)], 24)
     if kind == 2:
         return revolve([(0.62 * r, 0.0), (0.62 * r, 0.03), (0.5 * r, 0.05), (0.42 * r, 0.5 * h), (0.5 * r, 0.94 * h), (0.62 * r, h)], 20)
     column = [(0.17, 0.2), (0.24, 0.26), (0.24, 0.3), (0.14, 0.36), (0.26, 0.52), (0.28, 0.6), (0.14, 0.8), (0.24, 0.92), (0.44, 1.0)]
     solids = revolve([(a * r, b * h) for a, b in column], 16)
-    for k in range(3):
-        a = math.pi / 2 + 2 * math.pi * k / 3
-        c, s = math.cos(a), math.sin(a)
-        path = curve(
-            [
-                (0.23 * r * c, 0.23 * r * s, 0.27 * h),
-                (0.5 * r * c, 0.5 * r * s, 0.24 * h),
-                (0.8 * r * c, 0.8 * r * s, 0.06 * h),
-                (r * c, r * s, 0.025),
-            ],
-            2,
-        )
+    foot = ((0.23 * r, 0.27 * h), (0.5 * r, 0.24 * h), (0.8 * r, 0.06 * h), (r, 0.025))
+    for a in turns(3, math.pi / 2):
+        path = curve([polar(out, a, z) for out, z in foot], 2)
         solids += tube(path, np.linspace(0.055, 0.026, len(path)), 8)
     return solids
