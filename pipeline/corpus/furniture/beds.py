@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 
 import numpy as np
@@ -11,7 +10,7 @@ from pipeline.corpus.furniture.bent import tube
 from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme, cane
 from pipeline.corpus.furniture.legs import leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, cushion, edges, inset, pillow, rod
+from pipeline.corpus.furniture.solids import Interval, Solid, around, box, cushion, edges, inset, pillow, rod, split
 from pipeline.corpus.furniture.upholstery import channels, duvet, throw_pillow, tufted_panel
 
 SOFT = frozenset({"upholstered", "tufted", "wing"})
@@ -20,7 +19,7 @@ SOFT = frozenset({"upholstered", "tufted", "wing"})
 def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a bed of one of the forms, made up with a mattress, a duvet and pillows."""
     w, d, h = size
-    x, y = (-w / 2, w / 2), (-d / 2, d / 2)
+    x, y = around(w / 2), around(d / 2)
     if form == "platform":
         return _platform(rng, size, scheme)
     soft = form in SOFT
@@ -30,27 +29,20 @@ def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     head = {"upholstered": 0.1, "tufted": 0.12, "wing": 0.1, "metal": 0.05}.get(form, 0.06)
     foot = 0.05 if form == "metal" else 0.0
     parts = _head(rng, form, x, (y[1] - head, y[1]), lift, h, scheme)
-    side = 0.07 if soft else 0.032
-    rail = (y[0] + foot, y[1] - head)
-    cloth = scheme.soft if soft else scheme.handle if form == "metal" else scheme.body
-    if soft:
-        frame: list[Solid] = [cushion(span, rail, (lift, rail_top), 0.02, 2) for span in edges(x, side)]
-        frame.append(cushion(inset(x, side), (rail[0], rail[0] + side), (lift, rail_top), 0.02, 2))
-    else:
-        frame = [
-            box((x[0] + 0.008, x[0] + side), rail, (lift, rail_top), 0.004),
-            box((x[1] - side, x[1] - 0.008), rail, (lift, rail_top), 0.004),
-        ]
-        if not foot:
-            frame.append(box(inset(x, side), (rail[0], rail[0] + side), (lift, rail_top), 0.004))
-    low = rail_top - 0.03
+    side, margin = (0.07, 0.0) if soft else (0.032, 0.008)
+    rail, z = (y[0] + foot, y[1] - head), (lift, rail_top)
     inner_x, inner_y = inset(x, side), (rail[0] + (0.0 if foot else side), rail[1])
+    places = [(span, rail) for span in edges(inset(x, margin), side - margin)]
+    if not foot:
+        places.append((inner_x, (rail[0], rail[0] + side)))
+    frame = [cushion(*place, z, 0.02, 2) if soft else box(*place, z, 0.004) for place in places]
+    low = rail_top - 0.03
     frame.append(box(inner_x, inner_y, (low - 0.03, low)))
-    parts += pieces("frame", frame, cloth)
+    parts += pieces("frame", frame, scheme.soft if soft else scheme.handle if form == "metal" else scheme.body)
     if foot:
         parts += pieces("footboard", _hoop(x, y[0] + foot / 2, min(0.72 * h, 0.7), scheme), scheme.handle)
-    kind = "bun" if scheme.manner.ornament > 0.5 and lift < 0.16 else "square" if form in ("panel", "slatted") else "tapered"
-    if form != "metal":
+    else:
+        kind = "bun" if scheme.manner.ornament > 0.5 and lift < 0.16 else "square" if form in ("panel", "slatted") else "tapered"
         feet = [s.moved((0, -0.04, 0)) for s in legs(kind, (w / 2 - 0.07, d / 2 - 0.12), lift, 0.055)]
         parts += pieces("feet", feet, leg_finish(scheme, kind))
     return Shape(parts + bedding(rng, inner_x, inner_y, low, top, scheme, h - top))
@@ -94,71 +86,64 @@ def bedding(rng: np.random.Generator, x: Interval, y: Interval, low: float, top:
     return parts
 
 
-def _head(rng: np.random.Generator, form: str, x: Interval, y: Interval, lift: float, h: float, scheme: Scheme) -> Pieces:  # noqa: PLR0911 - one return per form
+def _head(rng: np.random.Generator, form: str, x: Interval, y: Interval, lift: float, h: float, scheme: Scheme) -> Pieces:
     """Return a headboard over `x`, `y` up to `h`."""
     w = x[1] - x[0]
-    wood = scheme.timber if form == "slatted" else scheme.body
     if form == "upholstered":
-        count = max(2, round(w / 0.45))
-        xs = np.linspace(x[0], x[1], count + 1)
-        board = pieces("headboard", box(x, (y[0] + 0.052, y[1]), (lift, h - 0.012), 0.006), scheme.soft)
+        pad_y, z = (y[0], y[0] + 0.05), (lift + 0.12, h)
+        parts = pieces("headboard", box(x, (y[0] + 0.052, y[1]), (lift, h - 0.012), 0.006), scheme.soft)
         if rng.random() < 0.5:
-            return board + pieces("pads", channels(x, (y[0], y[0] + 0.05), (lift + 0.12, h), max(6, round(w / 0.14))), scheme.soft)
-        return board + pieces(
-            "pads",
-            [cushion((a + 0.001, b - 0.001), (y[0], y[0] + 0.05), (lift + 0.12, h), 0.024, 3) for a, b in itertools.pairwise(xs)],
-            scheme.soft,
-        )
+            return parts + pieces("pads", channels(x, pad_y, z, max(6, round(w / 0.14))), scheme.soft)
+        pads = [cushion(span, pad_y, z, 0.024, 3) for span in split(x, max(2, round(w / 0.45)), 0.001)]
+        return parts + pieces("pads", pads, scheme.soft)
     if form == "tufted":
         return pieces("headboard", tufted_panel(x, y, (lift, h), max(4, round(w / 0.26)), max(2, round((h - lift) / 0.26))), scheme.soft)
     if form == "wing":
-        parts = pieces("headboard", cushion(inset(x, 0.06), y, (lift, h), 0.04, 3), scheme.soft)
-        wings = [cushion((a, a + 0.058), (y[0] - 0.16, y[1]), (lift + 0.3, h - 0.02), 0.026, 2) for a in (x[0], x[1] - 0.058)]
-        return parts + pieces("wings", wings, scheme.soft)
+        wings = [cushion(span, (y[0] - 0.16, y[1]), (lift + 0.3, h - 0.02), 0.026, 2) for span in edges(x, 0.058)]
+        board = cushion(inset(x, 0.06), y, (lift, h), 0.04, 3)
+        return pieces("headboard", board, scheme.soft) + pieces("wings", wings, scheme.soft)
     if form == "metal":
         return pieces("headboard", _hoop(x, (y[0] + y[1]) / 2, h, scheme), scheme.handle)
-    post = 0.05
+    return _wooden_head(rng, form, x, y, lift, h, scheme)
+
+
+def _wooden_head(rng: np.random.Generator, form: str, x: Interval, y: Interval, lift: float, h: float, scheme: Scheme) -> Pieces:
+    """Return a headboard between two posts: of slats, or of a framed panel, which may be of cane."""
+    wood, post = scheme.timber if form == "slatted" else scheme.body, 0.05
     parts = pieces("posts", [box((a, a + post), y, (0, h), 0.006) for a in (x[0], x[1] - post)], wood)
     inner = inset(x, post)
     if form == "slatted":
-        count = max(5, round(w / 0.11))
-        xs = np.linspace(inner[0] + 0.05, inner[1] - 0.05, count)
-        rails = [box(inner, inset(y, 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (h - 0.09, h - 0.005))]
-        return parts + pieces(
-            "headboard", rails + [box(around(0.014, a), inset(y, 0.018), (lift + 0.21, h - 0.09), 0.002) for a in xs], wood
-        )
+        boards = [box(inner, inset(y, 0.01), z, 0.004) for z in ((lift + 0.14, lift + 0.21), (h - 0.09, h - 0.005))]
+        xs = np.linspace(*inset(inner, 0.05), max(5, round((x[1] - x[0]) / 0.11)))
+        boards += [box(around(0.014, a), inset(y, 0.018), (lift + 0.21, h - 0.09), 0.002) for a in xs]
+        return parts + pieces("headboard", boards, wood)
     weave = rng.random() < scheme.manner.cane
     field = inset(inner, 0.07)
     deep = (y[0] + 0.012, y[1] - 0.008)
-    boards = [box((inner[0], field[0]), deep, (lift, h - 0.02), 0.003), box((field[1], inner[1]), deep, (lift, h - 0.02), 0.003)]
+    boards = [box(span, deep, (lift, h - 0.02), 0.003) for span in ((inner[0], field[0]), (field[1], inner[1]))]
     boards += [box(field, deep, z, 0.003) for z in ((lift, lift + 0.3), (h - 0.1, h - 0.02))]
     panel = box(field, (deep[0] + 0.012, deep[1] - 0.006), (lift + 0.3, h - 0.1))
     parts += pieces("headboard", boards, wood) + pieces("panel", panel, cane(rng) if weave else scheme.front)
     if form == "panel":
-        parts += pieces("cap", box(inset(x, post), y, (h - 0.02, h), 0.005), wood)
+        parts += pieces("cap", box(inner, y, (h - 0.02, h), 0.005), wood)
     return parts
 
 
 def _hoop(x: Interval, y: float, h: float, scheme: Scheme) -> list[Solid]:
     """Return a bent tube with bars in it, and knobs where there is ornament."""
-    r = 0.017
-    w = x[1] - x[0]
+    r, w = 0.017, x[1] - x[0]
     rise = 0.12 * w if scheme.manner.ornament > 0.2 else 0.0
-    low = h - rise
-    bow = [
-        (x[0] + r, y, 0.0),
-        (x[0] + r, y, low - 0.08 * (rise == 0)),
-        *((x[0] + r + (w - 2 * r) * t, y, low - r + rise * math.sin(math.pi * t)) for t in np.linspace(0.06, 0.94, 8)),
-        (x[1] - r, y, low - 0.08 * (rise == 0)),
-        (x[1] - r, y, 0.0),
-    ]
-    solids = tube(bow, r, 8)
-    z = 0.42 * h
+    low, span, z = h - rise, w - 2 * r, 0.42 * h
+    shoulder = low - 0.08 * (rise == 0)
+    bow = [(x[0] + r, 0.0), (x[0] + r, shoulder)]
+    bow += [(x[0] + r + span * t, low - r + rise * math.sin(math.pi * t)) for t in np.linspace(0.06, 0.94, 8)]
+    bow += [(x[1] - r, shoulder), (x[1] - r, 0.0)]
+    solids = tube([(px, y, pz) for px, pz in bow], r, 8)
     solids.append(rod((x[0] + 2 * r, y, z), (x[1] - 2 * r, y, z), 0.7 * r, n=8))
     count = max(5, round(w / 0.14))
-    for t in (np.arange(count) + 0.5) / count:
+    for t in ((np.arange(count) + 0.5) / count).tolist():
         top = low - 2 * r + rise * math.sin(math.pi * t) - 0.012 * (rise > 0)
-        at = x[0] + r + (w - 2 * r) * float(t)
+        at = x[0] + r + span * t
         if top > z + 0.06:
             solids.append(rod((at, y, z + 0.7 * r), (at, y, top), 0.4 * r, n=6))
     return solids
@@ -169,30 +154,14 @@ def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     w, d, h = size
     deck = min(0.26, 0.32 * h)
     x, y = w / 2, d / 2
-    count = max(3, round(w / 0.28))
-    boards = [
-        box((a + 0.0008, b - 0.0008), (-y, y - 0.08), (deck - 0.035, deck), 0.003)
-        for a, b in itertools.pairwise(np.linspace(-x, x, count + 1))
-    ]
-    parts = pieces("deck", boards, scheme.body)
-    parts += pieces(
-        "plinth",
-        box(around(x - 0.16), around(y - 0.18), (0, deck - 0.035), 0.003),
-        scheme.accent if scheme.accent is not scheme.handle else scheme.timber,
-    )
+    boards = [box(span, (-y, y - 0.08), (deck - 0.035, deck), 0.003) for span in split((-x, x), max(3, round(w / 0.28)), 0.0008)]
+    plinth = box(around(x - 0.16), around(y - 0.18), (0, deck - 0.035), 0.003)
+    parts = pieces("deck", boards, scheme.body) + pieces("plinth", plinth, leg_finish(scheme, "square"))
     wide = min(0.7 * w, 1.2) if rng.random() < 0.3 else w
-    board = [box(around(wide / 2), (y - 0.045, y - 0.01), (0.06, h), 0.006)]
-    parts += pieces("headboard", board, scheme.timber)
+    parts += pieces("headboard", box(around(wide / 2), (y - 0.045, y - 0.01), (0.06, h), 0.006), scheme.timber)
     if rng.random() < 0.5:
-        half = (w - 0.06) / 2
-        pads = [
-            cushion(
-                (s * half / 2 - half / 2 + 0.01, s * half / 2 + half / 2 - 0.01), (y - 0.11, y - 0.047), (deck + 0.12, h - 0.02), 0.028, 3
-            )
-            for s in (-1, 1)
-        ]
+        half = (w - 0.06) / 4
+        pads = [cushion(around(half - 0.01, s * half), (y - 0.11, y - 0.047), (deck + 0.12, h - 0.02), 0.028, 3) for s in (-1, 1)]
         parts += pieces("back_pads", pads, scheme.soft)
-    edge = min(0.12, 0.06 * w)
-    return Shape(
-        parts + bedding(rng, around(x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * (h - deck)), scheme, 0.6 * (h - deck))
-    )
+    edge, room = min(0.12, 0.06 * w), h - deck
+    return Shape(parts + bedding(rng, around(x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * room), scheme, 0.6 * room))
