@@ -23,7 +23,20 @@ from pipeline.corpus.furniture.finishes import (
 )
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
 from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import Interval, around, box, circle, edges, inset, revolve, ring, shell, slab, standing, strips
+from pipeline.corpus.furniture.solids import (
+    Interval,
+    around,
+    box,
+    circle,
+    edges,
+    inset,
+    revolve,
+    ring,
+    shell,
+    slab,
+    standing,
+    strips,
+)
 
 FRONTS = (ENAMEL, STEEL, GRAPHITE)
 

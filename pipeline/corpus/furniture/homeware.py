@@ -22,13 +22,12 @@ from pipeline.corpus.furniture.solids import (
     slab,
     standing,
 )
-from pipeline.corpus.furniture.tableware import glaze
+from pipeline.corpus.furniture.tableware import CLEAR, glaze
 from pipeline.corpus.furniture.wall_decor import INKS, frame_boards
 from pipeline.style import Color
 
 SCREEN = Finish("screen", (0.008, 0.009, 0.011), 0.08, density=1200)
 SHELL = Finish("shell", (0.02, 0.02, 0.022), 0.35, density=1100)
-CLEAR = Finish("clear_glass", (0.80, 0.86, 0.86), 0.05, 0.0, 0.35, density=2500)
 WAX: tuple[Color, ...] = ((0.78, 0.74, 0.64), (0.55, 0.32, 0.24), (0.30, 0.36, 0.30), (0.68, 0.55, 0.52))
 FRUIT: tuple[Color, ...] = ((0.62, 0.05, 0.03), (0.70, 0.30, 0.02), (0.45, 0.52, 0.05), (0.72, 0.58, 0.05))
 CONTENTS: tuple[Color, ...] = ((0.62, 0.48, 0.28), (0.16, 0.07, 0.03), (0.74, 0.70, 0.60), (0.50, 0.26, 0.08), (0.30, 0.34, 0.12))

@@ -10,10 +10,31 @@ import numpy as np
 from pipeline.corpus.furniture.bent import blades, curve, prism, tube
 from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, inset, revolve, ring, slab, walls
+from pipeline.corpus.furniture.solids import (
+    Interval,
+    Solid,
+    Spot,
+    around,
+    between,
+    box,
+    circle,
+    edges,
+    inset,
+    polar,
+    revolve,
+    ring,
+    slab,
+    walls,
+)
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
 BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue", "barn_red", "emerald", "greige", "blush", "black")
+CLEAR = Finish("clear_glass", (0.80, 0.86, 0.86), 0.05, 0.0, 0.35, density=2500)
+VASES = {  # profiles of (radius, height), in shares
+    "bottle": ((0.6, 0.0), (0.95, 0.12), (1.0, 0.3), (0.8, 0.5), (0.3, 0.66), (0.24, 0.9), (0.34, 1.0)),
+    "belly": ((0.5, 0.0), (0.86, 0.18), (1.0, 0.45), (0.9, 0.7), (0.55, 0.9), (0.6, 1.0)),
+    "upright": ((0.62, 0.0), (0.8, 0.3), (1.0, 0.75), (0.7, 0.95), (0.74, 1.0)),
+}
 
 
 def glaze(rng: np.random.Generator) -> Finish:
@@ -36,25 +57,16 @@ def cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     w, d, h = size
     finish = glaze(rng)
     if form == "tumbler":
-        clear = Finish("clear_glass", (0.80, 0.86, 0.86), 0.05, 0.0, 0.35, density=2500)
-        return Shape(pieces("cup", vessel([(0.40 * w, 0.0), (0.5 * w, h)], 0.003, 0.006, 24), clear))
+        return Shape(pieces("cup", vessel([(0.40 * w, 0.0), (0.5 * w, h)], 0.003, 0.006, 24), CLEAR))
     r = 0.5 * d
     x = r - w / 2  # the body stands left of the middle, the handle is right of it
-    profile = (
-        [(0.92 * r, 0.0), (r, 0.12 * h), (r, h)] if form == "mug" else [(0.5 * r, 0.0), (0.74 * r, 0.14 * h), (0.92 * r, 0.45 * h), (r, h)]
-    )
+    mug, bowl_shaped = [(0.92, 0.0), (1.0, 0.12), (1.0, 1.0)], [(0.5, 0.0), (0.74, 0.14), (0.92, 0.45), (1.0, 1.0)]
+    profile = [(a * r, b * h) for a, b in (mug if form == "mug" else bowl_shaped)]
     body = [s.moved((x, 0, 0)) for s in vessel(profile, 0.005, 0.006, 20)]
     edge = x + r - 0.004
-    loop = curve(
-        [
-            (edge - 0.1 * r, 0, 0.82 * h),
-            (w / 2 - 0.004, 0, 0.72 * h),
-            (w / 2 - 0.006, 0, 0.4 * h),
-            (edge - 0.1 * r * (form != "mug"), 0, 0.24 * h),
-        ],
-        2,
-    )
-    return Shape(pieces("cup", body, finish) + pieces("handle", tube(loop, 0.0045, 6), finish))
+    bow = ((edge - 0.1 * r, 0.82), (w / 2 - 0.004, 0.72), (w / 2 - 0.006, 0.4), (edge - 0.1 * r * (form != "mug"), 0.24))
+    grip = tube(curve([(px, 0, z * h) for px, z in bow], 2), 0.0045, 6)
+    return Shape(pieces("cup", body, finish) + pieces("handle", grip, finish))
 
 
 def plate(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -80,38 +92,34 @@ def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     """Build a bottle, a bellied or an upright vase, some with twigs in it."""
     w, d, h = size
     finish = glaze(rng)
-    tall = 0.55 * h if form == "twigs" else h
-    r = min(w, d) / 2 * (0.42 if form == "twigs" else 1.0)
-    shapes = {
-        "bottle": [(0.6, 0.0), (0.95, 0.12), (1.0, 0.3), (0.8, 0.5), (0.3, 0.66), (0.24, 0.9), (0.34, 1.0)],
-        "belly": [(0.5, 0.0), (0.86, 0.18), (1.0, 0.45), (0.9, 0.7), (0.55, 0.9), (0.6, 1.0)],
-    }
-    outline = shapes.get(form, [(0.62, 0.0), (0.8, 0.3), (1.0, 0.75), (0.7, 0.95), (0.74, 1.0)])
-    profile = [(a * r, b * tall) for a, b in outline]
-    n = 16 if form == "twigs" else 24
+    tall, share, n = (0.55 * h, 0.42, 16) if form == "twigs" else (h, 1.0, 24)
+    r = min(w, d) / 2 * share
+    profile = [(a * r, b * tall) for a, b in VASES.get(form, VASES["upright"])]
     lower, upper = profile[: len(profile) - 2], profile[len(profile) - 3 :]
     base = pieces("vase", revolve(curve(lower, 3).tolist(), n), finish)
     for (r0, z0), (r1, z1) in itertools.pairwise(upper):
         base += pieces("neck", ring((r0, r1), (0.78 * r0, 0.78 * r1), (z0, z1), n), finish)
-    if form != "twigs":
-        return Shape(base)
+    return Shape(base + _twigs(rng, size, tall) if form == "twigs" else base)
+
+
+def _twigs(rng: np.random.Generator, size: Size, tall: float) -> Pieces:
+    """Return twigs with leaves that stand in a vase, `tall` [m]."""
+    w, d, h = size
     stems: list[Solid] = []
     roots, tips = [], []
     count = int(rng.integers(4, 7))
     for k in range(count):
         a = 2 * math.pi * k / count + float(rng.uniform(-0.4, 0.4))
         out, top = float(rng.uniform(0.5, 1.0)), h * float(rng.uniform(0.86, 1.0))
-        c, s = (0.5 * w - 0.035) * out * math.cos(a), (0.5 * d - 0.035) * out * math.sin(a)
-        path = curve([(0.1 * c, 0.1 * s, 0.8 * tall), (0.3 * c, 0.3 * s, 0.5 * (tall + top)), (c, s, top)], 2)
+        x, y = (0.5 * w - 0.035) * out * math.cos(a), (0.5 * d - 0.035) * out * math.sin(a)
+        path = curve([(0.1 * x, 0.1 * y, 0.8 * tall), (0.3 * x, 0.3 * y, 0.5 * (tall + top)), (x, y, top)], 2)
         stems += tube(path, np.linspace(0.003, 0.0018, len(path)), 4)
-        for j in range(2, len(path)):
-            for side in (-1, 1):
-                turn = a + side * 0.9
-                roots.append(path[j] - np.array([0, 0, 0.01]))
-                tips.append(path[j] + np.array([0.05 * math.cos(turn), 0.05 * math.sin(turn), 0.02]))
+        for p in path[2:]:
+            roots += [p - (0, 0, 0.01)] * 2
+            tips += [p + polar(0.05, a + side * 0.9, 0.02) for side in (-1, 1)]
     green = Finish("dry_leaf", shade(rng, LEAF.color if rng.random() < 0.6 else (0.40, 0.26, 0.10), 0.25), 0.7, pattern="leaf", density=300)
     twig = Finish("twig", (0.16, 0.09, 0.045), 0.9, density=500)
-    return Shape(base + pieces("stems", stems, twig) + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green))
+    return pieces("stems", stems, twig) + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green)
 
 
 def binding(rng: np.random.Generator) -> Finish:
@@ -131,17 +139,16 @@ def flat_book(rng: np.random.Generator, x: Interval, y: Interval, z: Interval) -
 def book(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a book that lies, stands upright, or lies open."""
     w, d, h = size
-    if form == "open":
-        parts: Pieces = ()
-        t = min(0.0035, 0.2 * h)
-        parts += pieces("cover", box(around(w / 2), around(d / 2), (0.0, t)), binding(rng))
-        for s in (-1, 1):
-            outer, inner = s * (w / 2 - 0.005), s * 0.001
-            low = [(min(outer, inner), t), (max(outer, inner), t)]
-            block = np.array([*low, (max(outer, inner), 0.6 * h if s > 0 else h), (min(outer, inner), h if s > 0 else 0.6 * h)])
-            parts += pieces("pages", prism(block, "y", around(d / 2 - 0.005)), PAPER)
-        return Shape(parts)
-    return Shape(flat_book(rng, around(w / 2), around(d / 2), (0.0, h)))
+    if form != "open":
+        return Shape(flat_book(rng, around(w / 2), around(d / 2), (0.0, h)))
+    t = min(0.0035, 0.2 * h)
+    parts = pieces("cover", box(around(w / 2), around(d / 2), (0.0, t)), binding(rng))
+    for s in (-1, 1):
+        x0, x1 = between(s * (w / 2 - 0.005), s * 0.001)
+        low, high = (h, 0.6 * h)[::s]  # the pages rise towards the fold
+        block = np.array([(x0, t), (x1, t), (x1, high), (x0, low)])
+        parts += pieces("pages", prism(block, "y", around(d / 2 - 0.005)), PAPER)
+    return Shape(parts)
 
 
 def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -153,26 +160,20 @@ def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
         while x < w / 2 - 0.012:
             t = min(float(rng.uniform(0.018, 0.05)), w / 2 - x)
             tall, deep = h * float(rng.uniform(0.78, 1.0)), d * float(rng.uniform(0.8, 1.0))
-            cover = binding(rng)
-            skin = 0.0025
-            y = (-d / 2, -d / 2 + deep)
-            boards = [
-                box((x, x + skin), y, (0, tall)),
-                box((x + t - skin, x + t), y, (0, tall)),
-                box((x + skin, x + t - skin), (y[0], y[0] + skin), (0, tall)),
-            ]
-            parts += pieces("cover", boards, cover)
-            parts += pieces("pages", box((x + skin, x + t - skin), (y[0] + skin, y[1] - 0.004), (0.003, tall - 0.004)), PAPER)
+            cover, skin, y = binding(rng), 0.0025, -d / 2
+            inner = inset((x, x + t), skin)
+            boards = [box(span, (y, y + deep), (0, tall)) for span in edges((x, x + t), skin)]
+            parts += pieces("cover", [*boards, box(inner, (y, y + skin), (0, tall))], cover)
+            parts += pieces("pages", box(inner, (y + skin, y + deep - 0.004), (0.003, tall - 0.004)), PAPER)
             x += t + 0.0008
         return Shape(parts)
     count = max(2, round(h / 0.035))
-    edges = np.cumsum(rng.uniform(0.6, 1.4, count))
-    edges = np.concatenate([[0.0], edges / edges[-1] * h])
-    for k in range(count):
+    levels = np.cumsum(rng.uniform(0.6, 1.4, count))
+    levels = np.concatenate([[0.0], levels / levels[-1] * h])
+    for k, z in enumerate(itertools.pairwise(levels.tolist())):
         share = 1.0 if k == 0 else float(rng.uniform(0.75, 0.98))
         dx, dy = (float(v) for v in rng.uniform(-0.5, 0.5, 2) * (1 - share))
-        span_x, span_y = (w * (dx - share / 2), w * (dx + share / 2)), (d * (dy - share / 2), d * (dy + share / 2))
-        parts += flat_book(rng, span_x, span_y, (float(edges[k]), float(edges[k + 1])))
+        parts += flat_book(rng, (w * (dx - share / 2), w * (dx + share / 2)), (d * (dy - share / 2), d * (dy + share / 2)), z)
     return Shape(parts)
 
 
@@ -181,26 +182,20 @@ def basket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     w, d, h = size
     straw = Finish("straw", shade(rng, (0.52, 0.36, 0.18)), 0.9, pattern="cane", density=300, second=(0.22, 0.14, 0.07))
     body = h - 0.03
-    if form == "round":
-        solids = vessel([(0.40 * w, 0.0), (0.48 * w, 0.4 * body), (0.46 * w, body)], 0.012, 0.012, 18)
-        solids = [s.scaled(np.array([1, d / w, 1])) for s in solids]
-        rim = [s.scaled(np.array([1, d / w, 1])) for s in ring((0.5 * w, 0.5 * w), (0.46 * w, 0.46 * w), (body, body + 0.015), 18)]
-    else:
-        t = 0.012
-        x, y = (-w / 2 + 0.006, w / 2 - 0.006), (-d / 2 + 0.006, d / 2 - 0.006)
-        solids = [box(x, y, (0, t)), *walls(x, y, (t, body), t)]
-        rim = [
-            box((s * w / 2 - 0.012 - 0.012 * s, s * w / 2 + 0.012 - 0.012 * s), around(d / 2), (body, body + 0.015), 0.004) for s in (-1, 1)
-        ] + [
-            box(around(w / 2 - 0.024), (s * d / 2 - 0.012 - 0.012 * s, s * d / 2 + 0.012 - 0.012 * s), (body, body + 0.015), 0.004)
-            for s in (-1, 1)
-        ]
     top = body + 0.015
+    if form == "round":
+        squash = np.array([1, d / w, 1])
+        wall = vessel([(0.40 * w, 0.0), (0.48 * w, 0.4 * body), (0.46 * w, body)], 0.012, 0.012, 18)
+        solids = [s.scaled(squash) for s in wall]
+        rim = ring((0.5 * w, 0.5 * w), (0.46 * w, 0.46 * w), (body, top), 18, squash=d / w)
+    else:
+        t, x, y = 0.012, around(w / 2 - 0.006), around(d / 2 - 0.006)
+        solids = [box(x, y, (0, t)), *walls(x, y, (t, body), t)]
+        rim = walls(around(w / 2), around(d / 2), (body, top), 0.024, 0.004)
     rope = Finish("rope", FABRICS["taupe_cloth"], 0.95, density=400)
     grips: list[Solid] = []
     for s in (-1, 1):
         x0 = s * (0.478 * w if form == "round" else w / 2 - 0.012)
-        grips += tube(
-            curve([(x0, -0.05, top - 0.002), (x0, -0.03, h - 0.006), (x0, 0.03, h - 0.006), (x0, 0.05, top - 0.002)], 2), 0.005, 6
-        )
+        bow = ((-0.05, top - 0.002), (-0.03, h - 0.006), (0.03, h - 0.006), (0.05, top - 0.002))
+        grips += tube(curve([(x0, py, z) for py, z in bow], 2), 0.005, 6)
     return Shape(pieces("basket", solids, straw) + pieces("rim", rim, straw) + pieces("grips", grips, rope))
