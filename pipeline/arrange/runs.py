@@ -132,11 +132,18 @@ def _stretches(edge: Edge, depth: float, site: Site, taken: Sequence[Floats], un
         s, off = edge.along_of(outline), edge.off(outline)
         if off.min() < depth and off.max() > 0.02:
             cuts.append((float(s.min()) - margin, float(s.max()) + margin))
-    stretches, at = [], BACK
-    for low, high in [*sorted(cuts), (edge.length - BACK, math.inf)]:
-        if low - at > 0.3:
-            stretches.append(Stretch(edge, at, low, list(units)))
-        at = max(at, high)
+    return _between(edge, cuts, BACK, edge.length - BACK, 0.3, units)
+
+
+def _between(
+    edge: Edge, cuts: Sequence[tuple[float, float]], low: float, high: float, least: float, units: Sequence[int] = ()
+) -> list[Stretch]:
+    """Return what cuts leave of a wall from `low` to `high`, each piece longer than `least` [m]."""
+    stretches, at = [], low
+    for first, last in [*sorted(cuts), (high, math.inf)]:
+        if first - at > least:
+            stretches.append(Stretch(edge, at, first, list(units)))
+        at = max(at, last)
     return stretches
 
 
@@ -150,14 +157,7 @@ def _fill(
     site: Site,
 ) -> list[int]:
     """Lay units out in the stretches of a wall, each in the one that is nearest to its draft and has room; return who found none."""
-    left = []
-    for i in sorted(units, key=lambda i: (items[i].placement.category not in {SINK, COOKER}, -items[i].area, i)):
-        wide = 2 * float(items[i].half[0]) + SEAM
-        fitting = [st for st in stretches if st.room(items) >= wide]
-        if fitting:
-            min(fitting, key=lambda st: round(_apart(st, items[i]), 6)).units.append(i)
-        else:
-            left.append(i)
+    left = _assign(sorted(units, key=lambda i: (items[i].placement.category not in {SINK, COOKER}, -items[i].area, i)), items, stretches)
     for stretch in stretches:
         if stretch.units:
             runs.append(_lay(stretch, items, poses, site))
@@ -165,8 +165,20 @@ def _fill(
     return left
 
 
+def _assign(units: Sequence[int], items: Sequence[Item], stretches: Sequence[Stretch]) -> list[int]:
+    """Give units, the first first, to the stretch that is nearest to their draft and has room; return who found none."""
+    left = []
+    for i in units:
+        fitting = [st for st in stretches if st.room(items) >= 2 * float(items[i].half[0]) + SEAM]
+        if fitting:
+            min(fitting, key=lambda st: round(_apart(st, items[i]), 6)).units.append(i)
+        else:
+            left.append(i)
+    return left
+
+
 def _apart(stretch: Stretch, item: Item) -> float:
-    s = float(stretch.edge.along_of(item.wished[:2]))
+    s = _along(stretch.edge, item.wished)
     return max(0.0, stretch.low - s, s - stretch.high)
 
 
@@ -175,7 +187,7 @@ def _lay(stretch: Stretch, items: Sequence[Item], poses: dict[int, Floats], site
     edge = stretch.edge
     order = _unit_order(stretch, items)
     first, last = (min(_play(items[order[k]]), stretch.room(items) / 2) for k in (0, -1))
-    widths, wished = [2 * float(items[i].half[0]) for i in order], [_place(items[i], edge) for i in order]
+    widths, wished = [2 * float(items[i].half[0]) for i in order], [_along(edge, items[i].wished) for i in order]
     places = _pack_units(widths, wished, stretch.low + first, stretch.high - last)
     line = BACK + max(2 * float(items[i].half[1]) for i in order if not _tall(items[i])) if not all(_tall(items[i]) for i in order) else 0.0
     for i, s in zip(order, places, strict=True):
@@ -190,8 +202,8 @@ def _play(item: Item) -> float:
     return max(0.0, float(across.max() - item.half[0]))
 
 
-def _place(item: Item, edge: Edge) -> float:
-    return float(edge.along_of(item.wished[:2]))
+def _along(edge: Edge, pose: Floats) -> float:
+    return float(edge.along_of(pose[:2]))
 
 
 def _tall(item: Item) -> bool:
@@ -200,13 +212,13 @@ def _tall(item: Item) -> bool:
 
 def _unit_order(stretch: Stretch, items: Sequence[Item]) -> list[int]:
     """Return the units in the order of the draft, what is tall at the nearer end, and a unit between sink and cooker."""
-    by_place = sorted(stretch.units, key=lambda i: (round(_place(items[i], stretch.edge), 6), i))
+    by_place = sorted(stretch.units, key=lambda i: (round(_along(stretch.edge, items[i].wished), 6), i))
     base = [i for i in by_place if not _tall(items[i])]
     middle = (stretch.low + stretch.high) / 2
     if base:
-        middle = float(np.mean([_place(items[i], stretch.edge) for i in base]))
+        middle = float(np.mean([_along(stretch.edge, items[i].wished) for i in base]))
     tall = [i for i in by_place if _tall(items[i])]
-    low = [i for i in tall if _place(items[i], stretch.edge) < middle]
+    low = [i for i in tall if _along(stretch.edge, items[i].wished) < middle]
     return [*low, *_part_sink_cooker(base, items), *(i for i in tall if i not in low)]
 
 
@@ -240,7 +252,7 @@ def _pack_units(widths: Sequence[float], wished: Sequence[float], low: float, hi
 def _before(stretch: Stretch, order: Sequence[int], items: Sequence[Item], poses: dict[int, Floats]) -> Floats:
     """Return the outline (4, 2) of a run and the floor that its doors need."""
     edge = stretch.edge
-    s = [float(edge.along_of(poses[i][:2])) for i in order]
+    s = [_along(edge, poses[i]) for i in order]
     low, high = s[0] - float(items[order[0]].half[0]), s[-1] + float(items[order[-1]].half[0])
     deep = max(2 * float(items[i].half[1]) for i in order) + BACK + AHEAD
     return np.array([edge.start + a * edge.along + b * edge.inward for a, b in ((low, 0.0), (high, 0.0), (high, deep), (low, deep))])
@@ -263,50 +275,29 @@ def _hang(items: Sequence[Item], walls: Sequence[Edge], runs: list[list[int]], p
         if bottom < top + LEAST_AIR:
             continue
         cuts = [(opening.start - SEAM, opening.end + SEAM) for opening in edge.openings]
-        cuts += [
-            (_place_of(poses[i], edge) - float(items[i].half[0]) - SEAM, _place_of(poses[i], edge) + float(items[i].half[0]) + SEAM)
-            for i in base
-            if _tall(items[i])
-        ]
-        ends = [
-            (_place_of(poses[i], edge) - float(items[i].half[0]), _place_of(poses[i], edge) + float(items[i].half[0]))
-            for i in base
-            if not _tall(items[i])
-        ]
+        ends = []
+        for i in base:
+            at, wide = _along(edge, poses[i]), float(items[i].half[0])
+            if _tall(items[i]):
+                cuts.append((at - wide - SEAM, at + wide + SEAM))
+            else:
+                ends.append((at - wide, at + wide))
         low, high = (min(a for a, _ in ends), max(b for _, b in ends)) if ends else (BACK, edge.length - BACK)
-        _hang_in(own, items, _between(edge, cuts, low, high), poses, site.elevation + bottom)
-
-
-def _place_of(pose: Floats, edge: Edge) -> float:
-    return float(edge.along_of(pose[:2]))
+        cuts = [(min(first, high), last) for first, last in cuts]
+        _hang_in(own, items, _between(edge, cuts, low, high, 0.2), poses, site.elevation + bottom)
 
 
 def _at(pose: Floats, edge: Edge, item: Item) -> bool:
     off = float(edge.off(pose[:2]))
-    return abs(off - float(item.half[1])) < 0.2 and 0.0 < _place_of(pose, edge) < edge.length
-
-
-def _between(edge: Edge, cuts: Sequence[tuple[float, float]], low: float, high: float) -> list[Stretch]:
-    stretches, at = [], low
-    for a, b in [*sorted(cuts), (high, math.inf)]:
-        end = min(a, high)
-        if end - at > 0.2:
-            stretches.append(Stretch(edge, at, end))
-        at = max(at, b)
-    return stretches
+    return abs(off - float(item.half[1])) < 0.2 and 0.0 < _along(edge, pose) < edge.length
 
 
 def _hang_in(own: Sequence[int], items: Sequence[Item], stretches: Sequence[Stretch], poses: dict[int, Floats], z: float) -> None:
     """Lay wall units out in stretches, flush; who finds no room is left to be placed by itself."""
-    for i in sorted(own, key=lambda i: (-float(items[i].half[0]), i)):
-        fitting = [st for st in stretches if st.room(items) >= 2 * float(items[i].half[0]) + SEAM]
-        if fitting:
-            min(fitting, key=lambda st: round(_apart(st, items[i]), 6)).units.append(i)
+    _assign(sorted(own, key=lambda i: (-float(items[i].half[0]), i)), items, stretches)
     for stretch in stretches:
-        order = sorted(stretch.units, key=lambda i: (round(_place(items[i], stretch.edge), 6), i))
-        if order:
-            wide = [2 * float(items[i].half[0]) for i in order]
-            for i, s in zip(
-                order, _pack_units(wide, [_place(items[i], stretch.edge) for i in order], stretch.low, stretch.high), strict=True
-            ):
+        if stretch.units:
+            order = sorted(stretch.units, key=lambda i: (round(_along(stretch.edge, items[i].wished), 6), i))
+            wide, wished = [2 * float(items[i].half[0]) for i in order], [_along(stretch.edge, items[i].wished) for i in order]
+            for i, s in zip(order, _pack_units(wide, wished, stretch.low, stretch.high), strict=True):
                 poses[i] = stretch.edge.pose(s, BACK + float(items[i].half[1]), z)
