@@ -126,8 +126,7 @@ def at_anchor_poses(
     yaws = np.repeat(modes[:, 2], len(ALONG) * len(outwards))
     away = np.repeat(np.linalg.norm(modes[:, :2] - target[:2], axis=1), len(ALONG) * len(outwards))
     cost = BESIDE * away + aside + 0.5 * settings.turn_cost * yaw_difference(yaws, float(target[3]))
-    order = np.argsort(np.round(cost, 9), kind="stable")
-    return np.ascontiguousarray(_stack_poses(points, yaws, target[2])[order]), cost[order]
+    return cheapest_first(_stack_poses(points, yaws, target[2]), cost)
 
 
 def _along_walls(item: Item, target: Floats, walls: Sequence[Edge], neighbours: Floats) -> tuple[Floats, Floats]:
@@ -191,10 +190,15 @@ def _rank_poses(item: Item, poses: Floats, costs: Floats, site: Site) -> tuple[F
         poses, costs = np.repeat(poses, len(levels), axis=0), np.repeat(costs, len(levels))
         poses[:, 2] = np.tile(levels, len(poses) // len(levels))
         costs = costs + np.abs(poses[:, 2] - wished)
-    order = np.argsort(np.round(costs, 9), kind="stable")
-    poses = poses[order]
+    poses, costs = cheapest_first(poses, costs)
     poses[:, :3] = np.round(poses[:, :3], 4) + 0.0
-    return np.ascontiguousarray(poses), np.ascontiguousarray(costs[order])
+    return poses, costs
+
+
+def cheapest_first(poses: Floats, costs: Floats) -> tuple[Floats, Floats]:
+    """Return poses (C, 4) and costs (C,) in the order of the costs."""
+    order = np.argsort(np.round(costs, 9), kind="stable")
+    return np.ascontiguousarray(poses[order]), costs[order]
 
 
 def _stack_poses(points: Floats, yaws: Floats, z: float) -> Floats:

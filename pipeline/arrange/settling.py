@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import KEPT, TURNED, Bond, at_anchor, nearest
-from pipeline.arrange.candidates import ALONE, at_anchor_poses, everywhere, hides, near_by, round_walls, steps_to_walls
+from pipeline.arrange.candidates import ALONE, at_anchor_poses, cheapest_first, everywhere, hides, near_by, round_walls, steps_to_walls
 from pipeline.arrange.edges import Edge
 from pipeline.arrange.groups import Group, group_of, groups
 from pipeline.arrange.item import Item, wrap_yaw
@@ -251,8 +251,7 @@ def _close(occupancy: Occupancy, first: int, poses: Floats, costs: Floats) -> tu
     turns = [np.array([0.0, 0.0, 0.0, side * math.pi / 2]) for side in (1, -1)]
     poses = np.concatenate([poses, *(poses + turn for turn in turns)])
     costs = np.concatenate([costs, *(costs + occupancy.settings.turn_cost * math.pi / 2 for _ in turns)])
-    order = np.argsort(np.round(costs, 9), kind="stable")
-    return np.ascontiguousarray(poses[order]), costs[order]
+    return cheapest_first(poses, costs)
 
 
 def _anywhere(occupancy: Occupancy, draft: Draft, i: int) -> tuple[Floats, Floats]:
@@ -288,5 +287,4 @@ def _near(occupancy: Occupancy, draft: Draft, i: int) -> tuple[Floats, Floats]:
     if not len(beside):
         return poses, costs
     poses, costs = np.concatenate([beside, poses]), np.concatenate([cost, np.where(costs > 0.05, costs + ALONE, costs)])
-    order = np.argsort(np.round(costs, 9), kind="stable")
-    return np.ascontiguousarray(poses[order]), costs[order]
+    return cheapest_first(poses, costs)

@@ -49,26 +49,26 @@ def write_report(
         if (root / "plots" / "loss.csv").is_file()
         else []
     )
+    bars, failures, knobs = (_json(root / RECORDS / name) for name in ("planning.json", "failures.json", "knobs.json"))
     chapters = [
         Section("Views", [missing] if missing else [], pictures=gallery, wide=True),
         sections.dataset_section(
             figures["dataset"], _json(root / "metrics" / "sampling.json") | _json(root / "metrics" / "timing.json"), views
         ),
         sections.plan_section(figures["plan"]),
-        *_planning(root),
-        *_knobs(root, folder),
+        planning.planning_section(bars, failures, knobs, monotone),
+        _knobs(folder, knobs),
         sections.quantity_section(figures["quantity"], rates["quantity"]),
         sections.articulation_section(figures["articulation"], figures["ablation"]),
         sections.walkable_section(figures["walkable"], rates["walkable"]),
         sections.category_section(figures["category"]),
-        *_baselines(root),
+        baselines.baselines_section(_json(root / "metrics" / "baselines.json")),
         realism_section(figures["realism"], lineups(root, folder, homes, factory, settings)),
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
+        _calibration(folder, _json(root / "metrics" / "calibration.json")),
         sections.reject_section([_reject_row(r) for r in rejects]),
     ]
-    if comparison := _json(root / "metrics" / "calibration.json"):
-        chapters.insert(-1, _calibration(folder, comparison))
-    write_bytes(folder / "index.html", render("Homes for robots", _lead(root), chapters).encode())
+    write_bytes(folder / "index.html", render("Homes for robots", _lead(root), [c for c in chapters if c]).encode())
 
 
 def _lead(root: Path) -> str:
@@ -95,7 +95,9 @@ def lineups(root: Path, folder: Path, homes: Sequence[Home], factory: Factory, s
     return pictures
 
 
-def _calibration(folder: Path, comparison: Mapping[str, Any]) -> Section:
+def _calibration(folder: Path, comparison: Mapping[str, Any]) -> Section | None:
+    if not comparison:
+        return None
     pictures = []
     for name, png in calibration.plots(comparison).items():
         write_bytes(folder / "plots" / f"{name}.png", png)
@@ -103,27 +105,12 @@ def _calibration(folder: Path, comparison: Mapping[str, Any]) -> Section:
     return calibration.calibration_section(comparison, pictures)
 
 
-def _planning(root: Path) -> list[Section]:
-    """Return the chapter of the bars of floor plans, from the records that the checkout carries."""
-    kept, failures, knobs = (_json(root / RECORDS / name) for name in ("planning.json", "failures.json", "knobs.json"))
-    section = planning.planning_section(kept, failures, knobs, monotone)
-    return [section] if section else []
-
-
-def _baselines(root: Path) -> list[Section]:
-    """Return the chapter of the baselines, where they were run."""
-    section = baselines.baselines_section(_json(root / "metrics" / "baselines.json"))
-    return [section] if section else []
-
-
-def _knobs(root: Path, folder: Path) -> list[Section]:
+def _knobs(folder: Path, table: Mapping[str, Any]) -> Section | None:
     """Return the chapter of the knobs, from the table that the checkout carries; a checkout without benchmarks has none."""
-    kept = root / RECORDS / "knobs.json"
-    if not kept.is_file():
-        return []
-    table = _json(kept)
+    if not table:
+        return None
     write_bytes(folder / "plots" / "knobs.png", knob_picture(table))
-    return [sections.knob_section(table, Picture("plots/knobs.png", "each knob against its own term"))]
+    return sections.knob_section(table, Picture("plots/knobs.png", "each knob against its own term"))
 
 
 def _reject_row(reject: RejectCount) -> list[str]:

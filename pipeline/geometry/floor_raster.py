@@ -148,15 +148,12 @@ def _apart(there: Mask, margin: int) -> Floats:
     return apart
 
 
-def components(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """Label the 4-connected parts of a mask from 1, and return their sizes in cells (entry 0 counts what is outside)."""
-    labels, sizes = _label_components(mask)
-    return labels, sizes
-
-
 @compiled
-def _label_components(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """Flood each part from its first cell, in the order of rows and columns."""
+def components(mask: Mask) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Label the 4-connected parts of a mask from 1, and return their sizes in cells (entry 0 counts what is outside).
+
+    Each part is flooded from its first cell, in the order of rows and columns.
+    """
     rows, columns = mask.shape
     wide = columns + 2
     labels = np.full((rows + 2) * wide, -1, np.int32)  # with a margin, so that no neighbour lies outside; -1 is no cell of the mask

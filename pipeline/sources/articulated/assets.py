@@ -15,7 +15,7 @@ from pipeline.sources.articulated.hidden_boards import without_hidden
 from pipeline.sources.articulated.metric_scale import Fit
 from pipeline.sources.articulated.proportions import Proportions
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
-from pipeline.sources.articulated.shape_reader import unique_name
+from pipeline.sources.articulated.shape_reader import distinct_names
 from pipeline.sources.densities import density
 from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
 from pipeline.sources.meshes.inertials import Inertial, combine_inertials, inertia_flaw, mass_flaw
@@ -130,10 +130,5 @@ def _part(part: ShapePart, middle: Floats, scale: float) -> PartBox:
 
 def _unique(bodies: tuple[ShapeBody, ...]) -> list[ShapeBody]:
     """Return the bodies under names that differ."""
-    taken: set[str] = {"base"}
-    named = [replace(bodies[0], name="base")]
-    for body in bodies[1:]:
-        name = unique_name(body.name, taken)
-        taken.add(name)
-        named.append(replace(body, name=name))
-    return named
+    names = distinct_names(["base", *(body.name for body in bodies[1:])])
+    return [replace(body, name=name) for body, name in zip(bodies, names, strict=True)]

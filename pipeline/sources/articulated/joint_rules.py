@@ -13,7 +13,7 @@ from pipeline.entities.asset import JointType
 from pipeline.geometry.kinematics import joint_motion
 from pipeline.sources.articulated.mobility_v2 import Mobility
 from pipeline.sources.articulated.part_classes import words_of
-from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, apply, below
+from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, apply, below, span_of
 from pipeline.sources.articulated.urdf import UrdfJoint
 
 Floats = NDArray[np.float64]
@@ -185,7 +185,7 @@ def opening(joint: ShapeJoint) -> ShapeJoint:
 
 def without_empty(bodies: list[ShapeBody], joints: list[ShapeJoint], words: Mapping[int, str], notes: list[Note]) -> list[ShapeJoint]:
     """Leave out joints to bodies without geometry: helper links of screws, and what moves nothing. `words` name bodies."""
-    span = _span(bodies)
+    span = span_of(bodies)
     while True:
         odd = next((j for j in joints if bodies[j.child].empty), None)
         if odd is None:
@@ -257,11 +257,6 @@ def _box(body: ShapeBody) -> Floats:
 def _volume(boxes: Sequence[Floats], moved: set[int], T: Floats) -> float:
     points = np.concatenate([apply(T, box) if k in moved else box for k, box in enumerate(boxes)])
     return float(np.prod(np.ptp(points, axis=0)))
-
-
-def _span(bodies: Sequence[ShapeBody]) -> float:
-    boxes = [b for body in bodies if len(b := _box(body))]
-    return float(np.linalg.norm(np.ptp(np.concatenate(boxes), axis=0))) if boxes else 1.0
 
 
 def _note(joint: UrdfJoint, reason: str, detail: str) -> Note:

@@ -124,3 +124,9 @@ def below(joints: Sequence[ShapeJoint], body: int) -> set[int]:
         if joint.parent in bodies:
             bodies.add(joint.child)
     return bodies
+
+
+def span_of(bodies: Sequence[ShapeBody]) -> float:
+    """Return the diagonal of the box around bodies at rest [units], 1 where they have no geometry."""
+    points = np.concatenate([body.points() for body in bodies])
+    return float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 1.0

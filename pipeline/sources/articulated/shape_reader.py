@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 
@@ -16,7 +17,7 @@ from pipeline.sources.articulated.mesh_files import MeshFiles
 from pipeline.sources.articulated.mobility_v2 import Mobility
 from pipeline.sources.articulated.part_boxes import annotated_part
 from pipeline.sources.articulated.part_classes import Annotation, fixed_class, named_class
-from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, below
+from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, below, span_of
 from pipeline.sources.articulated.urdf import Shape, Urdf, UrdfLink
 from pipeline.sources.guarded import Folder
 from pipeline.sources.meshes.near_boxes import FACES
@@ -157,7 +158,7 @@ class ShapeReader:
         for name, link in looks.links.items():
             body = borrowed[owner[name]]
             body.visuals += self._visuals(link, T[name], len(body.visuals), moves=self._moves(name, body_of) if name in body_of else False)
-        span = _span(bodies)
+        span = span_of(bodies)
         if all(_alike(a, b, span) for a, b in zip(bodies, borrowed, strict=True)):
             for body, other in zip(bodies, borrowed, strict=True):
                 body.visuals = other.visuals
@@ -211,11 +212,6 @@ def _alike(body: ShapeBody, other: ShapeBody, span: float) -> bool:
     return float(away.max()) <= LIKE * span
 
 
-def _span(bodies: list[ShapeBody]) -> float:
-    points = np.concatenate([body.points() for body in bodies])
-    return float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 1.0
-
-
 def _post(bodies: list[ShapeBody], joints: list[ShapeJoint], hinge: ShapeJoint) -> tuple[Floats, Ints]:
     """Return vertices (8, 3) and faces (12, 3) of a square post along a hinge, on the far side of it from its leaf."""
     points = np.concatenate([bodies[k].points() for k in sorted(below(joints, hinge.child))])
@@ -237,23 +233,16 @@ def _post(bodies: list[ShapeBody], joints: list[ShapeJoint], hinge: ShapeJoint) 
 
 def _assign_names(joints: list[ShapeJoint]) -> list[ShapeJoint]:
     """Give joints ids that are unique in the asset and match [a-z][a-z0-9_]*."""
-    taken: set[str] = set()
-    named = []
-    for joint in joints:
-        name = unique_name(slug(joint.name), taken)
-        taken.add(name)
-        named.append(replace(joint, name=name))
-    return named
+    return [replace(j, name=name) for j, name in zip(joints, distinct_names(slug(j.name) for j in joints), strict=True)]
 
 
-def unique_name(name: str, taken: set[str]) -> str:
-    """Return the name, with a number behind it where it is taken."""
-    number = 1
-    candidate = name
-    while candidate in taken:
-        number += 1
-        candidate = f"{name}_n{number}"
-    return candidate
+def distinct_names(names: Iterable[str]) -> list[str]:
+    """Return the names, with a number behind those that another before them has."""
+    kept: list[str] = []
+    for name in names:
+        candidates = itertools.chain([name], (f"{name}_n{number}" for number in itertools.count(2)))
+        kept.append(next(candidate for candidate in candidates if candidate not in kept))
+    return kept
 
 
 def slug(name: str) -> str:
