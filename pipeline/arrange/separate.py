@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,29 +24,13 @@ from pipeline.arrange.site import Site
 from pipeline.arrange.snapping import exact_poses
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
-
-
-class Found(Protocol):
-    """What a search of the library returns."""
-
-    @property
-    def asset_id(self) -> str:
-        """The asset."""
-
-    @property
-    def distance(self) -> float:
-        """How far it is from what is replaced."""
-
-    @property
-    def scale(self) -> NDArray[np.float64]:
-        """Factor (3,) on the asset's own size."""
-
+from pipeline.retrieval.index import Match
 
 BROKEN = 0.6  # a broken relation, beside 1 for its object if that were lost
 UNREACHED = 0.3  # what a robot cannot use at its anchor, beside 1 for a lost object of no size; elsewhere it is as good as lost
 ALWAYS = 0.95  # share of the training examples from which on nothing else is known of a category than that it is there
 HIDDEN_ROUNDS = 3  # rounds that are spent on what a robot cannot open and no relation holds there
-Smaller = Callable[[str, float], Found | None]  # (asset_id, area [m2]) -> the closest asset with a smaller footprint
+Smaller = Callable[[str, float], Match | None]  # (asset_id, area [m2]) -> the closest asset with a smaller footprint
 
 
 @dataclass(frozen=True, slots=True)
