@@ -183,7 +183,7 @@ class Clause:
         if not self.run:
             cue = next((x for x in reversed(self.sentence[:k]) if x.kind == "cue"), None)
             chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
-            if self.objects and self.relative != chained and not (self.relative and "verb_last" in self.state.heard.lexicon.traits):
+            if self.objects and self.relative != chained:
                 return self.objects  # "away from the bedroom, which is next to ...", "X next to Y next to Z"
             return self.subject
         last = self.run[-1]
@@ -193,8 +193,7 @@ class Clause:
             if not any(x.kind in LISTING for x in self.sentence[cue_at + 1 : self.place(last)]):
                 return self.subject  # "a guest room with its own bath, away from ..."
         alone = (
-            (before is not None and before.kind == "open")  # "a garage (joined to the hall)"
-            or self.relative
+            self.relative
             or (comma and len(self.run) > 1 and not self.verb)
             or (
                 e.value in {"door", "leads"} and self.says(e, "with") and not last.plural and not self.verb
@@ -209,7 +208,6 @@ class Clause:
             or e.value in {"leads", "away", "apart", "wall"}
             or self.says(e, "finite")
             or any(self.says(x, "finite") for x in self.sentence[self.place(last) + 1 : k])
-            or any(x.det & {"both", "all"} for x in self.run)
         )
         if verbal:
             return ids_of(self.run)
@@ -249,8 +247,6 @@ class Clause:
                 first, joined, end = first or e, "", k + 1
             elif not group and (standin := self._standin(k, e, left)) is not None:
                 return standin
-            elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE and not (joined == "comma" and self.relative):
-                joined = "and"  # "leads to the bath and into the kitchen"
             elif e.kind in LISTING:
                 joined = "comma" if e.kind == "comma" and joined != "and" else "and"
             elif not self._passed(e, bool(group), joined, cue):
@@ -293,9 +289,7 @@ class Clause:
         ahead = self.ahead(k + 1, "det", "amount", "adj", "flag", "word")
         if cue == "between" and joined == "and" and count == 1:
             return True
-        if (cue == "open" and e.type in PRIVATE and not e.definite) or (
-            cue == "cmp" and ((joined == "comma" and e.amounts) or "equal" in e.adjectives)
-        ):
+        if (cue == "open" and e.type in PRIVATE and not e.definite) or (cue == "cmp" and "equal" in e.adjectives):
             return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
         if ahead is not None and self._starts(ahead, cue):
             return False

@@ -257,18 +257,10 @@ def _change_mark(mark: Mark, change: str) -> Mark:
     return replace(mark, kind=kind, value=value, number=number) if change else mark
 
 
-# word order: relations in two parts, adjectives behind their noun
+# word order: relations in two parts
 
 
-def reorder(marks: list[Mark], words: Words) -> list[Mark]:
-    """Return the marks in the order that the reader reads."""
-    reordered, traits = _join_brackets(marks, words), words.lexicon.traits
-    if "verb_last" in traits:
-        return list(_verbs_last(reordered, words))
-    return _behind(reordered, words.lexicon) if "adjectives_behind" in traits else reordered
-
-
-def _join_brackets(marks: list[Mark], words: Words) -> list[Mark]:
+def join_brackets(marks: Sequence[Mark], words: Words) -> list[Mark]:
     """Make one relation of its two parts: "an ... grenzt" stands where "an" stood."""
     reordered, lex = list(marks), words.lexicon
     k = 0
@@ -329,39 +321,3 @@ def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...], lex: Lexicon) -
             return None
         k += 1
     return None if need else k
-
-
-def _verbs_last(marks: list[Mark], words: Words) -> Iterator[Mark]:
-    """Yield the marks with plurals that only articles tell, and articles out of prepositions."""
-    relabelled, lex = list(marks), words.lexicon
-    for k in range(len(relabelled)):
-        mark, ahead = relabelled[k], relabelled[k + 1] if k + 1 < len(relabelled) else None
-        if mark.kind == "room" and any(words.tokens[mark.last - 1].text.lower().endswith(t) for t in lex.sign("dative")):
-            relabelled[k] = replace(mark, plural=True)
-        uncounted = mark.text in lex.sign("plural_article") | lex.sign("plural_dative") and ahead is not None and ahead.kind == "room"
-        if uncounted and ahead is not None and any(ahead.text.endswith(t) for t in lex.sign("uncounted")):
-            relabelled[k + 1] = replace(ahead, plural=mark.text in lex.sign("plural_article"))
-    for k, mark in enumerate(relabelled):
-        if (
-            mark.kind in HEADS
-            and k
-            and relabelled[k - 1].kind == "cue"
-            and relabelled[k - 1].text.rsplit(" ", 1)[-1] in lex.sign("with_article")
-        ):
-            yield Mark("det", "definite", 0.0, False, mark.first, mark.first, "")  # "ins Bad" means a bathroom that is known
-        yield mark
-
-
-def _behind(marks: Sequence[Mark], lex: Lexicon) -> list[Mark]:
-    """Read adjectives behind their noun: "dormitorio principal", "cocina abierta", "baño propio"."""
-    relabelled: list[Mark] = []
-    for mark in marks:
-        before = relabelled[-1] if relabelled else None
-        behind = before is not None and (before.kind in {*HEADS, "post"} or (before.kind, before.value) == ("size", "post"))
-        if behind and (mark.kind == "adj" or (mark.kind == "det" and mark.value in {"own", "another"})):
-            relabelled.append(replace(mark, kind="post"))
-        elif behind and mark.kind == "size":
-            relabelled.append(replace(mark, value="post"))
-        elif not (behind and mark.kind == "adverb" and mark.text in lex.sign("very")):
-            relabelled.append(mark)
-    return relabelled

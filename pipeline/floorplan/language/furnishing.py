@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import bisect
 import functools
-from collections.abc import Mapping, Sequence
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -247,12 +248,9 @@ class Scan:
     def _share(self, k: int) -> int:
         """Read "70 % free", "at least seventy per cent of the floor free", "空地70%", "free: 70 %"."""
         if free := self.length(k, "free"):
-            for j in range(k + free, min(k + free + NEAR, len(self.words))):
-                length, value = self.number(j)
+            for j, (length, value) in ((j, self.number(j)) for j in self._part(k + free, NEAR)):
                 if value is not None and (percent := self.length(j + length, "percent")):
                     return self._put("walkable", k, j + length + percent, value=value / 100)
-                if self.text(j) in COMMAS:
-                    break
             return 0
         at = k + self.length(k, "least", "exactly")
         at += self.length(at, "article") if at > k else 0
@@ -263,14 +261,16 @@ class Scan:
         if not (half or percent or (fraction and value is not None)):
             return 0
         end = k + fraction + length if fraction else at + length + half + percent
-        for j in range(end, min(end + FAR, len(self.words))):
-            if self.text(j) in COMMAS:
-                break
-            if self.length(j, "free"):
-                while step := self.length(j, "free", "floor"):
-                    j += step  # noqa: PLW2901 - reading goes on
-                return self._put("walkable", k, j, value=0.5 if value is None else value / 100)
-        return 0
+        at = next((j for j in self._part(end, FAR) if self.length(j, "free")), None)
+        if at is None:
+            return 0
+        while step := self.length(at, "free", "floor"):
+            at += step
+        return self._put("walkable", k, at, value=0.5 if value is None else value / 100)
+
+    def _part(self, k: int, most: int) -> Iterator[int]:
+        """Yield the places from k on as far as the next comma, `most` at most."""
+        return itertools.takewhile(lambda j: self.text(j) not in COMMAS, range(k, min(k + most, len(self.words))))
 
     def _things(self, k: int) -> int:
         """Read an amount of pieces, of things that open, or of a category."""
@@ -299,15 +299,17 @@ class Scan:
         self.negated = most == 0
         self._style_at(at, name_at - at)
         size = self._after("count", k, name_at + length, name, least, most)
-        self.claims[-1] = replace(self.claims[-1], plural=read is None and least > 1)
-        return size + (self._seats(k + size) if name in TABLES and most != 0 else 0)
+        claim, place = self.claims[-1], len(self.claims) - 1
+        seats = self._seats(k + size) if name in TABLES and most != 0 else 0
+        self.claims[place] = replace(claim, plural=read is None and least > 1, inward=claim.inward and not seats)
+        return size + seats
 
     def _seats(self, k: int) -> int:
         """Read for how many a table is, as chairs: "for six people"."""
         lead = self.length(k, "in")
         length, value = self.number(k + lead) if lead else (0, None)
         people = self.length(k + lead + length, "seated")
-        ends = self.text(k + lead + length) in {"", *COMMAS} or self.length(k + lead + length, "in")
+        ends = self.text(k + lead + length) in {"", *COMMAS} or self.length(k + lead + length, "in", "and")
         if value is None or value > MOST_SEATS or not (people or ends):
             return 0
         return self._put("count", k, k + lead + length + people, CHAIRS, int(value))

@@ -120,8 +120,6 @@ def _mark(words: Words, i: int) -> Mark:  # noqa: PLR0911 - one branch per case:
         spaced = i > 0 and words.tokens[i - 1].end < token.start and i + 1 < len(words.texts) and words.tokens[i + 1].start > token.end
         numbers = i > 0 and words.tokens[i - 1].number is not None
         kind = "dash" if numbers or text == "~" else ("comma" if spaced else "hyphen")
-        if i == 0 or words.texts[i - 1] == "\n":
-            kind = "bullet"
         return Mark(kind, "", 0.0, False, i, i + 1, text)
     if text in PUNCTUATION:
         kind = PUNCTUATION[text]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import bisect
-import functools
 import itertools
 import re
 from collections.abc import Mapping, Sequence
@@ -14,7 +13,7 @@ from pydantic import ValidationError
 
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.language.builder import assemble
-from pipeline.floorplan.language.frames import apply_frames, reorder
+from pipeline.floorplan.language.frames import apply_frames, join_brackets
 from pipeline.floorplan.language.furnishing import STOPS, Claim, Scan, read_furniture
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.marks import Mark, Words, amounts, listen, segment
@@ -65,7 +64,7 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
     said = [m for m in apply_frames(marks, words) if m.kind != "wish"]
     refuse(said, words)
     people = [m for m in said if m.kind == "people"]
-    marks = reorder([m for m in said if m.kind != "people"], words)
+    marks = join_brackets([m for m in said if m.kind != "people"], words)
     parsed = sentences(marks, words)
     everything = [e for s in parsed for e in s]
     if not any(e.kind in {"np", "home"} or (e.kind, e.value) == ("amount", "rooms") for e in everything):
@@ -192,7 +191,7 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
     evidence = []
     for claim in claims:
         every = tuple(r.id for r in program.rooms) if claim.home and claim.kind in {"pieces", "openable"} else ()
-        rooms = every or place.of(claim) or ("",)
+        rooms = every or place.likeliest(claim, place.of(claim)) or ("",)
         one = replace(claim, least=1) if claim.plural and len(rooms) > 1 else claim  # "two bedrooms with wardrobes"
         for room in rooms:
             by_room.setdefault(room, []).append(one)
@@ -264,12 +263,8 @@ class _Place:
     def __init__(self, program: FloorProgram, claims: Sequence[Claim], prompt: str, named: Sequence[Mention]) -> None:
         self.claims, self.prompt, self.named = claims, prompt, named
         self.kinds: Mapping[str, str] = {r.id: r.type for r in program.rooms}
-        self.stops = [-1, *(i for i, c in enumerate(prompt) if c in STOPS and not _decimal(prompt, i)), len(prompt)]
-
-    @functools.cached_property
-    def scan(self) -> Scan:
-        """Return the words of the prompt."""
-        return Scan(self.prompt)
+        self.scan = Scan(prompt)
+        self.stops = [-1, *(w.start for w in self.scan.words if w.text in STOPS), len(prompt)]
 
     def _at(self, place: int) -> int:
         """Return the first word from a place on."""
@@ -310,23 +305,29 @@ class _Place:
 
     def _of_the_home(self, claim: Claim, room: Mention) -> bool:
         """Whether what follows a room is the home's: "a two-bedroom flat with a sofa", "two bedrooms, a kitchen and a sofa"; but "with bunk beds"."""
-        natural, first, last = self._natural(claim, room), self._at(room.end), self._at(claim.start)
-        if self.scan.length(first, "dwelling"):
+        natural = self._natural(claim, room)
+        if self.scan.length(self._at(room.end), "dwelling"):
             return claim.kind != "count" or not (claim.plural and natural)
-        if claim.kind != "count" or natural:
+        if claim.kind != "count" or natural or not self._joined(room.end, claim.start):
             return False
-        led = any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in range(first, last))
-        named = self._at(room.start)
-        flat = next((k for k in range(named - 1, named - 4, -1) if self.scan.length(k, "dwelling", "with", "and")), named)
-        dwelling = self.scan.length(flat, "dwelling")
-        return self._joined(room.end, claim.start) and bool(dwelling or not led)  # "un piso de dos dormitorios con un sofá"
+        return self._counted_in_a_dwelling(room) or not self._led(room, claim)
+
+    def _counted_in_a_dwelling(self, room: Mention) -> bool:
+        """Whether rooms say how large a home is: "un piso de dos dormitorios"."""
+        first = self._at(room.start)
+        before = next((k for k in range(first - 1, first - 4, -1) if self.scan.length(k, "dwelling", "with", "and")), first)
+        return bool(self.scan.length(before, "dwelling"))
+
+    def _led(self, room: Mention, claim: Claim) -> bool:
+        """Whether a word or a mark between a room and a wish gives the one to the other: "with", "has", a colon."""
+        between = range(self._at(room.end), self._at(claim.start))
+        return any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in between)
 
     def _styled(self, claim: Claim, before: Sequence[Mention], after: Sequence[Mention]) -> tuple[str, ...]:
         """Return whose style it is: a room's where it stands in the room's list of wishes or right before its name, else the home's."""
         if before and self._joined(before[-1].end, claim.start):
             own = any(c is not claim and before[-1].end <= c.start < claim.start for c in self.claims)
-            led = any(self.scan.length(k, "in", "with", "is") for k in range(self._at(before[-1].end), self._at(claim.start)))
-            if own or led or "characters" in self.scan.traits:
+            if own or self._led(before[-1], claim) or "characters" in self.scan.traits:
                 return before[-1].ids
         if after and not self.prompt[claim.end : after[0].start].strip() and not self.scan.length(self._at(after[0].end), "dwelling"):
             return after[0].ids
@@ -347,6 +348,8 @@ class _Place:
     def _natural(self, claim: Claim, mention: Mention) -> bool:
         return claim.kind != "count" or any(self.kinds.get(i) in natural(claim.name) for i in mention.ids)
 
-
-def _decimal(prompt: str, i: int) -> bool:
-    return prompt[i] == "." and 0 < i < len(prompt) - 1 and prompt[i - 1].isdigit() and prompt[i + 1].isdigit()
+    def likeliest(self, claim: Claim, rooms: tuple[str, ...]) -> tuple[str, ...]:
+        """Return those rooms, of several types that one word names, in which a thing stands most often: a dining table in one of two halls."""
+        kinds = {self.kinds[i] for i in rooms}
+        likely = next((kind for kind in natural(claim.name) if kind in kinds), "") if claim.kind == "count" else ""
+        return tuple(i for i in rooms if self.kinds[i] == likely) or rooms

@@ -11,6 +11,7 @@ from pipeline.floorplan.language.marks import HEADS, LEADING, Mark, Words
 from pipeline.floorplan.program.consistency import ImpossibleError
 
 DROPPED = kinds("dropped")
+BEHIND = {"own", "another"}  # determiners that may stand behind their noun
 ROLES = {"primary", "guest", "child", "shared"}  # said by an adjective
 ENDS = {"comma", "join", "clf", "stop", "open", "close", "slash"}
 MOST_INDEX = 12
@@ -195,7 +196,7 @@ def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Element]
         elements[-2].adjectives.update({"melted"} if part != "bedroom" else ())
         front = [p for p in front if p.kind != "num"]
     phrase = _phrase(replace(mark, value=names[-1]), front, compound, lex)
-    k = _behind(marks, k + 1, phrase, postposed)
+    k = _behind(marks, k + 1, phrase, postposed, lex)
     while len(names) > 1 and k < len(marks) and marks[k].kind == "amount":
         elements[-2 * len(names) + 2].amounts.append(marks[k])
         k += 1
@@ -234,19 +235,22 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> El
     return phrase
 
 
-def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> int:
+def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool, lex: Lexicon) -> int:
     """Read what belongs to a noun phrase behind its head: adjectives, an index, a number, areas; return where reading goes on."""
+    adjectives = "adjectives_behind" in lex.traits
     while k < len(marks):
         mark, ahead = marks[k], marks[k + 1] if k + 1 < len(marks) else None
-        if mark.kind == "post" or (mark.kind == "det" and mark.value == "own" and not _heads_phrase(marks, k + 1)):
-            if mark.value in {"own", "another"}:
+        if (mark.kind == "adj" and adjectives) or (
+            mark.kind == "det" and mark.value in BEHIND and (adjectives or not _heads_phrase(marks, k + 1))
+        ):
+            if mark.kind == "det":
                 phrase.det.add(mark.value)
             elif mark.value in {*ROLES, "ensuite"}:
                 phrase.role = phrase.role or mark.value
             else:
                 phrase.adjectives.add(mark.value)
             phrase.last = mark.last
-        elif mark.kind == "size" and mark.value == "post":
+        elif mark.kind == "size" and adjectives:
             phrase.size = mark.number
         elif mark.kind == "num" and _counts(marks, k, phrase, postposed):
             counted = ahead is not None and ahead.kind == "clf"
@@ -255,7 +259,11 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
             else:
                 phrase.index = int(mark.number)
             k += counted
-        elif mark.kind != "clf" and not (mark.kind in {"colon", "times"} and ahead is not None and ahead.kind == "num"):
+        elif (
+            mark.kind != "clf"
+            and mark.text not in lex.sign("very")
+            and not (mark.kind in {"colon", "times"} and ahead is not None and ahead.kind == "num")
+        ):
             return k
         phrase.taken.append(mark)
         k += 1
@@ -356,6 +364,4 @@ def _list(sentence: list[Element], j: int) -> None:
         rest = next((x for x in sentence[i + 1 :] if x.kind not in {"np", "comma", "det"}), None)
         if joined == "comma" and not titled and (rest is None or rest.kind != "or"):
             return
-        if i + 1 < len(sentence) and sentence[i + 1].kind in {"cue", "verb", "neg"} and joined != "or":
-            return  # it has a statement of its own
         e.banned, joined = True, ""
