@@ -10,7 +10,7 @@ import functools
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
 
@@ -128,31 +128,28 @@ def _fold_words(text: str) -> frozenset[str]:
     return frozenset(fold(w) for w in split(text))
 
 
-@dataclass
 class Lexicon:
     """Phrases of one language as a trie over folded words, and the words that typing errors are repaired towards."""
 
-    language: Language
-    name: str = ""
-    traits: frozenset[str] = frozenset()
-    compounds: Compounds = field(default_factory=Compounds)
-    behind: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    trie: dict[str, Any] = field(default_factory=dict)
-    vocabulary: set[str] = field(default_factory=set)
-    targets: tuple[str, ...] = ()
-    others: Mapping[str, float] = field(default_factory=dict)  # all other words of it -> how much farther a typing error is from them
-    adverbs: frozenset[str] = frozenset()
-    endings: tuple[str, ...] = ()
-    abbreviations: frozenset[str] = frozenset()
-    frames: Mapping[str, tuple[tuple[tuple[str, ...], tuple[str, ...], str], ...]] = field(default_factory=dict)  # by the first word
-    looks: tuple[_Look, ...] = ()
-    range_from: frozenset[str] = frozenset()
-    range_to: frozenset[str] = frozenset()
-    bounds: Mapping[str, str] = field(default_factory=dict)
-    joins: frozenset[str] = frozenset()
-    signs: Mapping[str, frozenset[str]] = field(default_factory=dict)  # words -> the closed classes that they belong to
-    classes: Mapping[str, frozenset[str]] = field(default_factory=dict)  # the same, by class
-    tenses: Mapping[str, str] = field(default_factory=dict)  # forms of verbs -> the form that the phrases are made of
+    def __init__(self, entries: _Entries) -> None:
+        verbs, phrases = entries.verbs_of, entries.phrases
+        self.language, self.name, self.traits = entries.language, entries.name, entries.traits
+        self.compounds, self.looks, self.behind = entries.compounds, entries.looks, entries.behind
+        self.adverbs, self.abbreviations = _fold_words(phrases.get("adverbs", {}).get("", "")), _fold_words(entries.abbreviations)
+        self.endings = tuple(sorted(split(entries.endings), key=len, reverse=True))
+        self.range_from, self.range_to = (_fold_words(entries.range.get(side, "")) for side in ("from", "to"))
+        self.bounds = {" ".join(words(p)): key for key, entry in phrases["bounds"].items() for p in split(entry)}
+        self.joins = frozenset((",", *(w for entry in phrases["joiners"].values() for w in _fold_words(entry))))
+        heads = {p.split()[0] for entry in phrases.get("conjugated", {}).values() for p in split(entry)}
+        infinitives = sorted(filter(verbs.infinitive, heads))
+        self.tenses = verbs.canonical(infinitives) | entries.spellings  # forms of verbs -> the form that the phrases are made of
+        self.vocabulary = {*self.tenses, *(fold(w) for verb in infinitives for w in verbs.further(verb))}
+        self.classes = {sign: self._closed_class(entry, verbs.contracted) for sign, entry in entries.signs.items()}
+        listed = {text for texts in self.classes.values() for text in texts}
+        self.signs = {text: frozenset(sign for sign, texts in self.classes.items() if text in texts) for text in listed}
+        self.trie: dict[str, Any] = {}
+        self.frames = self._brackets(entries)  # relations in two parts, by the first word
+        self._learn(entries)
 
     def sign(self, name: str) -> frozenset[str]:
         """Return the words of a closed class."""
@@ -182,6 +179,55 @@ class Lexicon:
             else:
                 break
         return best
+
+    def _tense(self, phrase: tuple[str, ...]) -> tuple[str, ...]:
+        """Return a phrase with its verbs in the one form that they are read in."""
+        return tuple(self.tenses.get(w, w) for w in phrase)
+
+    def _closed_class(self, entry: str, contracted: Mapping[str, str]) -> frozenset[str]:
+        return frozenset(" ".join(self._tense(spelt)) for p in split(entry) for spelt in _spellings(p, contracted))
+
+    def _insert(self, key: tuple[str, ...], meaning: Meaning) -> None:
+        node = self.trie
+        for word in key:
+            node = node.setdefault(word, {})
+        if key:
+            node.setdefault("", meaning)
+
+    def _brackets(self, entries: _Entries) -> dict[str, tuple[tuple[tuple[str, ...], tuple[str, ...], str], ...]]:
+        """Return relations in two parts ("an ... grenzt") by their first word, the longest first."""
+        pairs: dict[tuple[tuple[str, ...], ...], str] = {}
+        for cue, phrases in entries.frames.items():
+            for sides in (phrase.split("...") for phrase in split(phrases)):
+                spelt = ([self._tense(w) for w in _spellings(side.strip(), {})] for side in sides)
+                for pair in itertools.product(*spelt):
+                    self.vocabulary.update(*pair)
+                    pairs[tuple(tuple(self.compounds.melted.get(w, w) for w in side) for side in pair)] = cue
+        longest = sorted(pairs.items(), key=lambda p: -len(p[0][0]) - len(p[0][1]))
+        return {word: tuple((a, b, cue) for (a, b), cue in longest if a[0] == word) for word in {first[0] for first, _ in pairs}}
+
+    def _learn(self, entries: _Entries) -> None:
+        """Put all phrases into the trie, and sort words by how near a typing error must be to them."""
+        targets: set[str] = set()
+        others = dict.fromkeys((w for some in self.frames.values() for a, b, _ in some for w in (*a, *b)), FARTHER[True])
+        for phrase, meaning in _meanings(entries):
+            for spelt in _spellings(phrase, entries.verbs_of.contracted):
+                self._insert(self._tense(spelt), meaning)
+                self.vocabulary.update(spelt)
+                if meaning.kind in REPAIRED or (meaning.kind == "cue" and meaning.value in CUES):
+                    targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
+                for w in spelt:
+                    others[w] = min(FARTHER[meaning.kind in FUNCTION], others.get(w, 1.0))
+        for wrong, meaning in _misheard(entries):
+            self._insert(words(wrong), meaning)
+        self.vocabulary.update(w for p in split(entries.common) for w in words(p))
+        blocked = {w for entry in entries.phrases.get("fillers", {}).values() for p in split(entry) if " " not in p for w in words(p)}
+        named = {w for entry in entries.phrases["rooms"].values() for p in split(entry.replace("|", ",")) for w in words(p)}
+        self.targets = tuple(sorted(targets - blocked, key=lambda w: (w not in named, w)))  # names of rooms first
+        others = dict.fromkeys(self.vocabulary, COMMON) | others
+        others = dict.fromkeys(_things(self.language, entries.plurals), FARTHER[True]) | others
+        spared = set(self.targets)
+        self.others = {w: far for w, far in others.items() if w not in spared and w.isalpha()}  # how much farther an error is from them
 
 
 def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:
@@ -243,80 +289,10 @@ def lexicon(language: Language) -> Lexicon:
         entries = _Entries.model_validate(yaml_text.parse(path.read_text(encoding="utf-8")))
     except (OSError, yaml.YAMLError, ValidationError, KeyError, AttributeError, TypeError) as error:
         raise ContentError(f"{path.name}: {' '.join(str(error).splitlines()[:3])}", "restore the file from the repository") from error
-    verbs, phrases = entries.verbs_of, entries.phrases
-    heads = {p.split()[0] for entry in phrases.get("conjugated", {}).values() for p in split(entry)}
-    infinitives = sorted(filter(verbs.infinitive, heads))
-    lex = Lexicon(language, entries.name, entries.traits, tenses=verbs.canonical(infinitives) | entries.spellings)
-    lex.compounds, lex.looks, lex.behind = entries.compounds, entries.looks, entries.behind
-    lex.adverbs, lex.abbreviations = _fold_words(phrases.get("adverbs", {}).get("", "")), _fold_words(entries.abbreviations)
-    lex.endings = tuple(sorted(split(entries.endings), key=len, reverse=True))
-    lex.range_from, lex.range_to = (_fold_words(entries.range.get(side, "")) for side in ("from", "to"))
-    lex.bounds = {" ".join(words(p)): key for key, entry in phrases["bounds"].items() for p in split(entry)}
-    lex.joins = frozenset((",", *(w for entry in phrases["joiners"].values() for w in _fold_words(entry))))
-    signs: dict[str, set[str]] = {}
-    for sign, entry in entries.signs.items():
-        for text in (" ".join(_normal_tense(spelt, lex)) for p in split(entry) for spelt in _spellings(p, verbs.contracted)):
-            signs.setdefault(text, set()).add(sign)
-    lex.signs = {text: frozenset(named) for text, named in signs.items()}
-    lex.classes = {sign: frozenset(t for t, named in signs.items() if sign in named) for sign in entries.signs}
-    lex.vocabulary.update(lex.tenses, (fold(w) for verb in infinitives for w in verbs.further(verb)))
-    _learn(lex, entries)
-    return lex
-
-
-def _learn(lex: Lexicon, entries: _Entries) -> None:
-    """Put all phrases into a lexicon, and sort its words by how near a typing error must be to them."""
-    targets: set[str] = set()
-    others = _brackets(entries, lex)
-    for phrase, meaning in _meanings(entries):
-        for spelt in _spellings(phrase, entries.verbs_of.contracted):
-            _insert(lex.trie, _normal_tense(spelt, lex), meaning)
-            lex.vocabulary.update(spelt)
-            if meaning.kind in REPAIRED or (meaning.kind == "cue" and meaning.value in CUES):
-                targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
-            for w in spelt:
-                others[w] = min(FARTHER[meaning.kind in FUNCTION], others.get(w, 1.0))
-    for wrong, meaning in _misheard(entries):
-        _insert(lex.trie, words(wrong), meaning)
-    lex.vocabulary.update(w for p in split(entries.common) for w in words(p))
-    blocked = {w for entry in entries.phrases.get("fillers", {}).values() for p in split(entry) if " " not in p for w in words(p)}
-    named = {w for entry in entries.phrases["rooms"].values() for p in split(entry.replace("|", ",")) for w in words(p)}
-    lex.targets = tuple(sorted(targets - blocked, key=lambda w: (w not in named, w)))  # names of rooms first
-    others |= {w: COMMON for w in lex.vocabulary if w not in others}
-    others = dict.fromkeys(_things(lex.language, entries.plurals), FARTHER[True]) | others
-    spared = set(lex.targets)
-    lex.others = {w: far for w, far in others.items() if w not in spared and w.isalpha()}
+    return Lexicon(entries)
 
 
 @functools.cache
 def unread() -> frozenset[str]:
     """Return words of languages that are not read, and that look like none of those that are."""
     return frozenset(split(yaml_text.parse((FOLDER / "others.yaml").read_text(encoding="utf-8"))["others"]))
-
-
-def _brackets(entries: _Entries, lex: Lexicon) -> dict[str, float]:
-    """Read cues in two parts into a lexicon ("an ... grenzt"); return their words, which build sentences."""
-    pairs = []
-    for cue, phrases in entries.frames.items():
-        for phrase in split(phrases):
-            first, second = phrase.split("...")
-            for a in _spellings(first.strip(), {}):
-                pairs += [(_normal_tense(a, lex), _normal_tense(b, lex), cue) for b in _spellings(second.strip(), {})]
-    plain = {tuple(tuple(lex.compounds.melted.get(w, w) for w in side) for side in (a, b)): cue for a, b, cue in pairs}
-    longest = sorted(plain.items(), key=lambda p: -len(p[0][0]) - len(p[0][1]))
-    lex.frames = {word: tuple((a, b, cue) for (a, b), cue in longest if a[0] == word) for word in {a[0] for a, _ in plain}}
-    lex.vocabulary.update(w for a, b, _ in pairs for w in (*a, *b))
-    return {w: FARTHER[True] for a, b, _ in pairs for w in (*a, *b)}
-
-
-def _normal_tense(phrase: tuple[str, ...], lex: Lexicon) -> tuple[str, ...]:
-    """Return a phrase with its verbs in the one form that they are read in."""
-    return tuple(lex.tenses.get(w, w) for w in phrase)
-
-
-def _insert(trie: dict[str, Any], key: tuple[str, ...], meaning: Meaning) -> None:
-    node = trie
-    for word in key:
-        node = node.setdefault(word, {})
-    if key:
-        node.setdefault("", meaning)
