@@ -247,6 +247,8 @@ class Clause:
                 first, joined, end = first or e, "", k + 1
             elif not group and (standin := self._standin(k, e, left)) is not None:
                 return standin
+            elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE and not (joined == "comma" and self.relative):
+                joined = "and"  # "leads to the bath and into the kitchen"
             elif e.kind in LISTING:
                 joined = "comma" if e.kind == "comma" and joined != "and" else "and"
             elif not self._passed(e, bool(group), joined, cue):

@@ -261,12 +261,10 @@ class Scan:
         if not (half or percent or (fraction and value is not None)):
             return 0
         end = k + fraction + length if fraction else at + length + half + percent
-        at = next((j for j in self._part(end, FAR) if self.length(j, "free")), None)
-        if at is None:
-            return 0
-        while step := self.length(at, "free", "floor"):
-            at += step
-        return self._put("walkable", k, at, value=0.5 if value is None else value / 100)
+        last = free = next((j for j in self._part(end, FAR) if self.length(j, "free")), 0)
+        while free and (step := self.length(last, "free", "floor")):
+            last += step
+        return self._put("walkable", k, last, value=0.5 if value is None else value / 100) if free else 0
 
     def _part(self, k: int, most: int) -> Iterator[int]:
         """Yield the places from k on as far as the next comma, `most` at most."""

@@ -28,6 +28,8 @@ def relate(c: Clause, k: int, e: Element) -> int | None:  # noqa: PLR0911 - one 
     if e.value == "in" and (c.negative is not None or (k and c.sentence[k - 1].kind == "and") or not _inside(c, left, group)):
         c.latest, c.run = group, [x for x in c.sentence[k:j] if x.kind == "np"][-1:]
         return j
+    if c.sentence[j - 1].kind == "zone" and e.value in {"door", "in"}:
+        return j
     behind = c.near(j)
     only = e.only or c.only is not None or c.says(e, "only") or (behind is not None and behind.value == "only")
     if e.value == "chain":
