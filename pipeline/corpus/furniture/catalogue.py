@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from pipeline import seeds, taxonomy
 from pipeline.corpus.furniture import sizes
+from pipeline.corpus.furniture.finishes import MANNERS
 from pipeline.corpus.furniture.lines import OTHER_SUPER_CATEGORY, SUPER_CATEGORIES, Form, Line, lines
-from pipeline.corpus.furniture.styles import MANNERS
 
 
 @dataclass(frozen=True, slots=True)

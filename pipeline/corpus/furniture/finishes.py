@@ -9,7 +9,6 @@ from typing import Literal, TypeVar
 import numpy as np
 
 from pipeline import style
-from pipeline.corpus.furniture.styles import MANNERS
 from pipeline.style import Color, StyleSpec
 
 Thing = TypeVar("Thing")
@@ -57,6 +56,8 @@ class Scheme:
     stone: Finish
 
 
+MANNERS: Mapping[str, StyleSpec] = {name: known.spec for name, known in style.load().styles.items()}
+CLASSIC, ORIENTAL = (style.load().groups[name] for name in ("classic", "oriental"))
 COLOURS = style.load().colours
 WOODS, LACQUERS, FABRICS, LEATHERS, METALS = (COLOURS[kind] for kind in ("woods", "lacquers", "fabrics", "leathers", "metals"))
 CLOTH_GROUNDS: Color = (0.72, 0.68, 0.60)  # the light thread of striped, checked and flowered cloth

@@ -6,8 +6,9 @@ import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from pipeline import style
 from pipeline.card import Corpus, cards
-from pipeline.corpus.furniture.styles import expand_styles
+from pipeline.corpus.furniture.finishes import MANNERS
 
 # 3D-FUTURE's super-category for each of our own (`super` of the cards); it has none for kitchens and baths.
 SUPER_CATEGORIES: Mapping[str, str] = {
@@ -54,8 +55,8 @@ def lines() -> Mapping[str, Line]:
 
 
 def _line(corpus: Corpus) -> Line:
-    forms = (
-        Form(name, f.name or corpus.name, f.round, f.upright, f.still, f.least_height, expand_styles(f.styles))
-        for name, f in corpus.forms.items()
-    )
+    forms = []
+    for name, f in corpus.forms.items():
+        styles = tuple(s for word in f.styles for s in style.load().groups.get(word, (word,)))  # words for several are spelt out
+        forms.append(Form(name, f.name or corpus.name, f.round, f.upright, f.still, f.least_height, styles or tuple(MANNERS)))
     return Line(tuple(forms), corpus.static, corpus.moving)

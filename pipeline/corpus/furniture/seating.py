@@ -9,7 +9,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.backs import Frame, back
 from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube
-from pipeline.corpus.furniture.finishes import Finish, Scheme, cane, one_of
+from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Scheme, cane, one_of
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import (
@@ -25,7 +25,6 @@ from pipeline.corpus.furniture.solids import (
     rod,
     slab,
 )
-from pipeline.corpus.furniture.styles import CLASSIC, ORIENTAL
 from pipeline.corpus.furniture.upholstery import piping, seat_cushion
 
 TUBE = 0.011  # radius of bent steel

@@ -10,11 +10,10 @@ import pytest
 from pipeline.corpus.furniture import bent, patterns, texture
 from pipeline.corpus.furniture.assembly import scheme_of, shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
-from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.finishes import MANNERS, Finish
 from pipeline.corpus.furniture.lines import lines
 from pipeline.corpus.furniture.shape import frozen, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, merge_solids, normals, pillow, topology
-from pipeline.corpus.furniture.styles import MANNERS
 from pipeline.corpus.furniture.wavefront import corners_of
 from pipeline.seeds import generator
 
