@@ -10,7 +10,21 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, STEEL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid
 from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, cushion, edges, inset, revolve, ring, rod, slab
+from pipeline.corpus.furniture.solids import (
+    Interval,
+    Spot,
+    around,
+    between,
+    box,
+    circle,
+    cushion,
+    edges,
+    inset,
+    revolve,
+    ring,
+    rod,
+    slab,
+)
 
 WIRE = 0.004  # radius of a bail [m]
 COFFEE = Finish("coffee", (0.03, 0.012, 0.006), 0.2, density=1000)
@@ -63,46 +77,35 @@ def coffee_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     w, d, h = size
     finish = _enamel(rng)
     trim = PLASTIC if finish is not GRAPHITE else STEEL
-    stand = 0.03
-    y = (-d / 2 + stand, d / 2)
-    x = around(w / 2)
-    back = y[0] + 0.6 * (y[1] - y[0])
-    foot, head, t = 0.17 * h, 0.70 * h, 0.012
-    lid_z = h - 0.035
-    inner = inset(x, t)
+    x, y = around(w / 2), (-d / 2 + 0.03, d / 2)
+    back, front = y[0] + 0.6 * (y[1] - y[0]), y[0] + 0.01  # the column's face, the plane of dials and buttons
+    foot, head, lid_z, t = 0.17 * h, 0.70 * h, h - 0.035, 0.012
+    inner, cap_x = inset(x, t), inset(x, 0.004)
     base = pieces("foot", [box(span, y, (0, foot), 0.002) for span in edges(x, t)], trim)
     base += pieces("floor", box(inner, y, (0, 0.01)), trim) + pieces("foot_back", box(inner, (back, y[1]), (0.01, foot)), trim)
     base += pieces("column", box(x, (back, y[1]), (foot, head), 0.006), finish)
-    base += pieces("head", box(x, (y[0] + 0.01, y[1]), (head, lid_z - 0.003), 0.008), finish)
-    grate = [
-        box(inset(inner, 0.004), (a, a + 0.007), (foot - 0.014, foot - 0.006)) for a in np.linspace(y[0] + 0.03, back - 0.014, 7).tolist()
-    ]
-    front = y[0] + 0.01  # the plane of dials and buttons
+    base += pieces("head", box(x, (front, y[1]), (head, lid_z - 0.003), 0.008), finish)
     style = FrontStyle("slab", "edge", trim, STEEL, thickness=0.01)
-    tray = drawer(
-        "drip_tray",
-        Rect(inset(inner, 0.002), (0.012, foot - 0.003), y[0]),
-        style,
-        (inner, (0.01, foot - 0.014), back),
-        PLASTIC,
-    )
-    movers = [tray]
-    cover = pieces("tank_lid", box(inset(x, 0.004), (back - 0.02, y[1] - 0.002), (lid_z, h - 0.004), 0.003), trim, group="lid")
-    cover += pieces("tank_rim", box((-0.02, 0.02), (back - 0.012, back), (h - 0.004, h)), trim, group="lid")
-    if form != "capsule":
-        movers.append(lid("tank", cover, (0.0, y[1] - 0.002, lid_z), math.radians(80)))
-    else:
-        base += pieces("cap", box(inset(x, 0.004), (back, y[1] - 0.002), (lid_z - 0.003, lid_z + 0.012), 0.003), trim)
+    rect = Rect(inset(inner, 0.002), (0.012, foot - 0.003), y[0])
+    movers = [drawer("drip_tray", rect, style, (inner, (0.01, foot - 0.014), back), PLASTIC)]
+    if form == "capsule":
+        base += pieces("cap", box(cap_x, (back, y[1] - 0.002), (lid_z - 0.003, lid_z + 0.012), 0.003), trim)
         movers.append(_capsule_lever(w, (front, back - 0.03), lid_z, h))
+    else:
+        cover = pieces("tank_lid", box(cap_x, (back - 0.02, y[1] - 0.002), (lid_z, h - 0.004), 0.003), trim, group="lid")
+        cover += pieces("tank_rim", box((-0.02, 0.02), (back - 0.012, back), (h - 0.004, h)), trim, group="lid")
+        movers.append(lid("tank", cover, (0.0, y[1] - 0.002, lid_z), math.radians(80)))
     z = head + 0.45 * (lid_z - head)
     base += pieces("display", box(around(0.14 * w), (front - 0.0015, front), (z - 0.012, z + 0.014)), DARK_GLASS, group="display")
     for k, bx in enumerate((-0.34 * w, 0.16 * w)):
         movers.append(button(f"button_{k}", (bx, bx + 0.1 * w), around(0.010, z), front, PLASTIC if trim is STEEL else STEEL))
     middle = (y[0] + 0.014 + back) / 2
     if form == "jug":
-        base += _jug(0.0, middle, foot - 0.005, head - 0.012, min(0.38 * w, 0.44 * (back - y[0])))
+        base += _jug(middle, foot - 0.005, head - 0.012, min(0.38 * w, 0.44 * (back - y[0])))
         plate = slab(circle(min(0.36 * w, middle - y[0] - 0.016), 16, (0.0, middle)), (foot - 0.014, foot - 0.0055))
         return Shape(base + pieces("hot_plate", plate, PLASTIC), tuple(movers))
+    bars = np.linspace(y[0] + 0.03, back - 0.014, 7).tolist()
+    grate = [box(inset(inner, 0.004), (a, a + 0.007), (foot - 0.014, foot - 0.006)) for a in bars]
     base += pieces("grate", grate, STEEL, group="grate")
     base += pieces("spout", revolve([(0.018, head - 0.035), (0.026, head)], 12, (0.0, middle)), STEEL)
     if form == "espresso":
@@ -121,15 +124,15 @@ def _capsule_lever(w: float, y: Interval, z: float, h: float) -> Mover:
     return Mover("lever", pieces("lever", solids, STEEL), "revolute", (-1, 0, 0), (0.0, y[1], z), 1.3, "hinge_handle", "lever", UP)
 
 
-def _jug(x: float, y: float, low: float, high: float, r: float) -> Pieces:
+def _jug(y: float, low: float, high: float, r: float) -> Pieces:
     """Return a glass jug half full of coffee, with a handle."""
-    rim = high - 0.025
-    wall = ring((r, 0.8 * r), (r - 0.006, 0.8 * r - 0.006), (low + 0.006, rim), 18, (x, y))
-    parts = staves("jug", wall, GLASS) + pieces("jug_floor", slab(circle(r, 18, (x, y)), (low, low + 0.006)), GLASS)
-    parts += pieces("coffee", revolve([(r - 0.008, low + 0.007), (r - 0.014, low + 0.4 * (rim - low))], 18, (x, y)), COFFEE)
-    parts += pieces("jug_lid", revolve([(0.8 * r, rim), (0.7 * r, high)], 18, (x, y)), PLASTIC)
-    grip = [box(around(0.008, x), (y - r - 0.026, y - r - 0.014), (low + 0.03, rim - 0.006), 0.003)]
-    grip.append(box(around(0.008, x), (y - r - 0.014, y - 0.8 * r), (rim - 0.018, rim - 0.006), 0.002))
+    rim, at = high - 0.025, (0.0, y)
+    wall = ring((r, 0.8 * r), (r - 0.006, 0.8 * r - 0.006), (low + 0.006, rim), 18, at)
+    parts = staves("jug", wall, GLASS) + pieces("jug_floor", slab(circle(r, 18, at), (low, low + 0.006)), GLASS)
+    parts += pieces("coffee", revolve([(r - 0.008, low + 0.007), (r - 0.014, low + 0.4 * (rim - low))], 18, at), COFFEE)
+    parts += pieces("jug_lid", revolve([(0.8 * r, rim), (0.7 * r, high)], 18, at), PLASTIC)
+    grip = [box((-0.008, 0.008), (y - r - 0.026, y - r - 0.014), (low + 0.03, rim - 0.006), 0.003)]
+    grip.append(box((-0.008, 0.008), (y - r - 0.014, y - 0.8 * r), (rim - 0.018, rim - 0.006), 0.002))
     return parts + pieces("jug_handle", grip, PLASTIC, group="jug_handle")
 
 
@@ -138,13 +141,10 @@ def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     w, d, h = size
     finish = one_of(rng, (STEEL, _enamel(rng), Finish("cast_iron", (0.03, 0.03, 0.032), 0.6, density=5000)))
     grip = STEEL if finish is not STEEL or rng.random() < 0.5 else PLASTIC
-    long_one = form == "stick"
-    if form == "bail":  # the hoop lies level behind the pot, so that the pot is in front of the middle of its box
-        r, centre = w / 2 - 0.025, (0.0, 0.0)
-    else:
-        r, centre = d / 2, (-w / 2 + d / 2 if long_one else 0.0, 0.0)
-    knob_high = min(0.035, 0.2 * h)
-    rim = h - knob_high - 0.02
+    # The hoop of a bail lies level behind the pot, so that the pot is in front of the middle of its box.
+    r = w / 2 - 0.025 if form == "bail" else d / 2
+    centre = (-w / 2 + d / 2 if form == "stick" else 0.0, 0.0)
+    rim = h - min(0.035, 0.2 * h) - 0.02
     wall = ring((0.94 * r, r), (0.94 * r - 0.008, r - 0.008), (0.008, rim), 24, centre)
     base = staves("wall", wall, finish) + pieces("floor", slab(circle(0.94 * r, 24, centre), (0.0, 0.008)), finish)
     dome = revolve([(r + 0.001, rim + 0.002), (r + 0.001, rim + 0.007), (0.5 * r, rim + 0.016), (0.2 * r, rim + 0.02)], 24, centre)
@@ -152,40 +152,31 @@ def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     neck = revolve([(0.009, rim + 0.02), (0.008, rim + 0.024), (0.02, h - 0.008), (0.016, h)], 12, centre)
     cover += pieces("lid_knob", neck, grip, "round_fixed_handle", "knob")
     movers = [Mover("lid", cover, "prismatic", (0, 0, 1), (*centre, rim), 0.6 * h, "slider_lid", "lid", UP)]
-    if long_one:
+    if form == "stick":
         stick = rod((centre[0] + r - 0.004, 0.0, 0.86 * rim), (w / 2, 0.0, 0.95 * rim), 0.011, 0.009)
         base += pieces("stick", stick, grip, "line_fixed_handle", "stick")
     elif form == "bail":
-        movers.append(bail((w / 2 - 0.004, d - r - 0.004), 0.9 * rim, centre, STEEL))
-        base += pieces("lugs", lugs(r, 0.9 * rim, centre), STEEL)
+        z = 0.9 * rim
+        movers.append(_bail((w / 2 - 0.004, d - r - 0.004), z))
+        lugs = [box(between(s * (r - 0.006), s * (r + 0.008)), (-0.01, 0.01), around(0.012, z), 0.002) for s in (-1, 1)]
+        base += pieces("lugs", lugs, STEEL)
     else:
-        reach = w / 2 - r
-        for s in (-1, 1):
-            ear = [box(around(0.006, s * (r + reach - 0.006)), (-0.035, 0.035), (0.80 * rim, 0.80 * rim + 0.012), 0.003)]
-            span = sorted((s * (r - 0.004), s * (r + reach - 0.012)))
-            ear += [box((span[0], span[1]), around(0.006, sy * 0.028), (0.80 * rim, 0.80 * rim + 0.012), 0.002) for sy in (-1, 1)]
-            base += pieces(f"ear_{'left' if s < 0 else 'right'}", ear, grip, "line_fixed_handle", f"ear_{s}")
+        level = (0.80 * rim, 0.80 * rim + 0.012)
+        for s, side in ((-1, "left"), (1, "right")):
+            ear = [box(around(0.006, s * (w / 2 - 0.006)), (-0.035, 0.035), level, 0.003)]
+            span = between(s * (r - 0.004), s * (w / 2 - 0.012))
+            ear += [box(span, around(0.006, sy * 0.028), level, 0.002) for sy in (-1, 1)]
+            base += pieces(f"ear_{side}", ear, grip, "line_fixed_handle", f"ear_{s}")
     return Shape(base, tuple(movers))
 
 
-def bail(radii: Spot, z: float, centre: Spot, finish: Finish) -> Mover:
+def _bail(radii: Spot, z: float) -> Mover:
     """Return a bucket's handle: half a hoop that lies level behind the wall and swings over to the front.
 
     `radii` [m]: half of its width, and how far it reaches back.
     """
-    angles = np.linspace(0, math.pi, 8).tolist()
-    points = [(centre[0] + radii[0] * math.cos(a), centre[1] + radii[1] * math.sin(a), z) for a in angles]
-    solids: list[Solid] = [rod(a, b, WIRE, n=6) for a, b in itertools.pairwise(points)]
-    middle = centre[1] + radii[1] * math.sin(angles[3])
-    solids[3] = rod((centre[0] - 0.05, middle, z), (centre[0] + 0.05, middle, z), 2 * WIRE, n=8)
-    parts = pieces("bail", [s for k, s in enumerate(solids) if k != 3], finish) + pieces("bail_grip", solids[3], PLASTIC)
-    return Mover("bail", parts, "revolute", (1, 0, 0), (centre[0], centre[1], z), math.pi, "hinge_handle", "handle", UP)
-
-
-def lugs(r: float, z: float, centre: Spot) -> list[Solid]:
-    """Return the two lugs on which a bail turns."""
-    solids = []
-    for s in (-1, 1):
-        x = sorted((centre[0] + s * (r - 0.006), centre[0] + s * (r + 0.008)))
-        solids.append(box((x[0], x[1]), around(0.01, centre[1]), around(0.012, z), 0.002))
-    return solids
+    points = [(radii[0] * math.cos(a), radii[1] * math.sin(a), z) for a in np.linspace(0, math.pi, 8).tolist()]
+    wires = [rod(a, b, WIRE, n=6) for k, (a, b) in enumerate(itertools.pairwise(points)) if k != 3]
+    grip = rod((-0.05, points[3][1], z), (0.05, points[3][1], z), 2 * WIRE, n=8)
+    parts = pieces("bail", wires, STEEL) + pieces("bail_grip", grip, PLASTIC)
+    return Mover("bail", parts, "revolute", (1, 0, 0), (0.0, 0.0, z), math.pi, "hinge_handle", "handle", UP)
