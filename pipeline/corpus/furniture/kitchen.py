@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, PLASTIC, STEEL, STONE, Finish, Scheme, one_of
 from pipeline.corpus.furniture.fronts import reach
-from pipeline.corpus.furniture.shape import Mover, Piece, Pieces, Shape, Size, join_shapes, pieces, staves
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, revolve, rod, shell, strips, walls
+from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, join_shapes, pieces, staves
+from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, revolve, rod, shell, stack, strips, walls
 from pipeline.corpus.furniture.storage import front_style
 
 PLINTH = 0.1  # height of a kitchen unit's recessed plinth [m]
@@ -72,54 +72,50 @@ def tall_unit(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return case(size, [Column(1, cells)], how)
 
 
-def bowl(x: Interval, y: Interval, top: float, depth: float, finish: Finish, wall: float = 0.008) -> Pieces:
+def bowl(x: Interval, y: Interval, top: float, depth: float, finish: Finish) -> Pieces:
     """Return an open basin under the rectangle `x`, `y`: a bottom and four walls whose rims end at `top` [m]."""
-    low = top - depth
-    solids = [box(x, y, (low - wall, low)), *walls(x, y, (low, top), wall)]
-    middle = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2)
-    drain = revolve([(0.025, low), (0.022, low + 0.003)], 12, middle)
-    return pieces("bowl", solids, finish) + pieces("drain", drain, STEEL)
+    low, wall = top - depth, 0.008
+    drain = revolve([(0.025, low), (0.022, low + 0.003)], 12, ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2))
+    return pieces("bowl", [box(x, y, (low - wall, low)), *walls(x, y, (low, top), wall)], finish) + pieces("drain", drain, STEEL)
 
 
-def tap(x: float, y: float, z: float, height: float, reach_out: float, finish: Finish) -> Shape:
-    """Return a tap at (x, y, z): a column, a spout that reaches towards the front, and a lever at its side that turns up."""
-    r = 0.011
+def tap(y: float, z: float, height: float, reach_out: float, finish: Finish) -> Shape:
+    """Return a tap at (0, y, z): a column, a spout that reaches towards the front, and a lever at its side that turns up."""
+    r, radius = 0.011, reach_out / 2
     steps = np.linspace(0, math.pi * 0.85, 6)
-    radius = reach_out / 2
-    points = [(y, z)] + [(y - radius + radius * math.cos(a), z + height - radius + radius * math.sin(a)) for a in steps]
-    solids: list[Solid] = [rod((x, a[0], a[1]), (x, b[0], b[1]), r, n=10) for a, b in itertools.pairwise(points)]
-    solids += revolve([(0.024, z), (0.022, z + 0.02)], 14, (x, y))
-    root = (x + r + 0.002, y, z + 0.055)
+    points = [(0.0, y, z)]
+    points += [(0.0, y - radius + radius * math.cos(a), z + height - radius + radius * math.sin(a)) for a in steps]
+    solids = [rod(a, b, r, n=10) for a, b in itertools.pairwise(points)] + revolve([(0.024, z), (0.022, z + 0.02)], 14, (0.0, y))
+    root = (r + 0.002, y, z + 0.055)
     arm = [rod(root, (root[0] + 0.014, y, root[2]), 0.010, n=10)]
     arm.append(box((root[0] + 0.014, root[0] + 0.022), (y - 0.075, y + 0.008), around(0.006, root[2]), 0.002))
-    lever_parts = pieces("lever", arm, finish, group="lever")
-    lever = Mover("tap_lever", lever_parts, "revolute", (-1, 0, 0), root, 1.0, "hinge_handle", "lever", (1.0, 0.0, 0.0))
+    parts = pieces("lever", arm, finish, group="lever")
+    lever = Mover("tap_lever", parts, "revolute", (-1, 0, 0), root, 1.0, "hinge_handle", "lever", (1.0, 0.0, 0.0))
     return Shape(pieces("tap", solids, finish), (lever,))
 
 
-def _topless(shape: Shape, top: Sequence[Piece]) -> Shape:
-    """Return the case with `top` in place of its own."""
-    return Shape(tuple(p for p in shape.base if p.name != "top") + tuple(top), shape.movers)
+def _sunk(shape: Shape, hole_x: Interval, hole_y: Interval, basin: Pieces) -> Shape:
+    """Return the case with a hole for `basin` in its top."""
+    old = next(p for p in shape.base if p.name == "top")
+    (x0, y0, z0), (x1, y1, z1) = old.solid.bounds().tolist()
+    top = pieces("top", strips((x0, x1), (y0, y1), hole_x, hole_y, (z0, z1), 0.002), old.finish)
+    return Shape(tuple(p for p in shape.base if p is not old) + top + basin, shape.movers)
 
 
 def sink_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a base unit whose counter holds a bowl and a tap, over doors or a deep drawer."""
     w, d, h = size
     tall = 0.28 if rng.random() < 0.5 else 0.22
-    body = h - tall  # the tap stands above the counter
-    body = max(body, 0.62)
+    body = max(h - tall, 0.62)  # the tap stands above the counter
     how = unit_style(rng, scheme)
-    cells: tuple[Cell, ...] = (Cell("pair", 1.0, 0),) if w > 0.56 else (Cell("left", 1.0, 0),)
+    cells: tuple[Cell, ...] = (Cell("pair" if w > 0.56 else "left", 1.0, 0),)
     if form == "drawer":  # the bowl leaves no room for a drawer above
         cells = (Cell("blank", 0.5), Cell("drawer", 0.9))
     shape = case((w, d, body), [Column(1, cells)], how)
     face = -d / 2 + max(reach(how.style.handle), how.nose)
-    half = min(0.3, 0.5 * w - 0.09)
-    hole_x, hole_y = (-half, half), (face + 0.09, d / 2 - 0.13)
-    z = (body - how.top_thickness, body)
-    top = pieces("top", strips(around(w / 2), (face - how.nose, d / 2), hole_x, hole_y, z, 0.002), how.top or STONE)
-    top += bowl((hole_x[0], hole_x[1]), hole_y, body - 0.003, 0.17, STEEL)
-    return join_shapes(_topless(shape, top), tap(0.0, d / 2 - 0.065, body, h - body, 0.2, scheme.handle))
+    hole = around(min(0.3, 0.5 * w - 0.09)), (face + 0.09, d / 2 - 0.13)
+    shape = _sunk(shape, *hole, bowl(*hole, body - 0.003, 0.17, STEEL))
+    return join_shapes(shape, tap(d / 2 - 0.065, body, h - body, 0.2, scheme.handle))
 
 
 def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -129,12 +125,10 @@ def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     legs = rng.random() < 0.4
     how = replace(unit_style(rng, scheme), overhang=0.006, nose=0.0)
     how = replace(how, feet="square", feet_height=0.16, feet_finish=scheme.accent) if legs else replace(how, feet_height=0.08)
-    top = one_of(rng, (CERAMIC, MARBLE, STONE))
-    how = replace(how, top=top, top_thickness=0.03)
+    how = replace(how, top=one_of(rng, (CERAMIC, MARBLE, STONE)), top_thickness=0.03)
     vessel = rng.random() < 0.45 or form == "drawers"
     if form == "drawers":
-        count = max(1, round(w / 0.6))
-        columns = [Column(1, (Cell("drawer"), Cell("drawer")))] * count
+        columns = [Column(1, (Cell("drawer"), Cell("drawer")))] * max(1, round(w / 0.6))
     else:
         columns = [Column(1, (Cell("pair", 1.0, 0 if not vessel else 1),))]
     shape = case((w, d, body), columns, how)
@@ -142,27 +136,19 @@ def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     if vessel:
         r, middle = min(0.36 * (d - 0.1), 0.19), (face + d / 2 - 0.11) / 2
         basin = _vessel(min(r * 1.2, 0.4 * w), r, (0.0, middle), (body, body + 0.12))
-        stand = tap(0.0, d / 2 - 0.045, body, h - body, 0.13, scheme.handle)
-        basin_parts = staves("basin", basin[1:], CERAMIC) + pieces("basin_floor", basin[0], CERAMIC)
-        return join_shapes(shape, Shape(basin_parts), stand)
-    half = min(0.26, 0.5 * w - 0.07)
-    hole_x, hole_y = (-half, half), (face + 0.06, d / 2 - 0.11)
-    z = (body - how.top_thickness, body)
-    new = pieces("top", strips(around(w / 2), (face - how.overhang, d / 2), hole_x, hole_y, z, 0.002), top)
-    new += bowl(hole_x, hole_y, body - 0.002, 0.13, CERAMIC)
-    return join_shapes(_topless(shape, new), tap(0.0, d / 2 - 0.055, body, h - body, 0.13, scheme.handle))
+        parts = staves("basin", basin[1:], CERAMIC) + pieces("basin_floor", basin[0], CERAMIC)
+        return join_shapes(shape, Shape(parts), tap(d / 2 - 0.045, body, h - body, 0.13, scheme.handle))
+    hole = around(min(0.26, 0.5 * w - 0.07)), (face + 0.06, d / 2 - 0.11)
+    shape = _sunk(shape, *hole, bowl(*hole, body - 0.002, 0.13, CERAMIC))
+    return join_shapes(shape, tap(d / 2 - 0.055, body, h - body, 0.13, scheme.handle))
 
 
 def _vessel(rx: float, ry: float, centre: Spot, z: Interval) -> list[Solid]:
     """Return an oval open basin that stands on a counter, its wall flaring upwards."""
-    n, squash = 24, ry / rx
-    rings = []
-    for scale_low, scale_high in ((0.72, 1.0), (0.66, 0.94)):
-        low = circle(rx * scale_low, n, centre, squash)
-        high = circle(rx * scale_high, n, centre, squash)
-        rings.append([np.column_stack([low, np.full(n, z[0] + 0.012)]), np.column_stack([high, np.full(n, z[1])])])
-    floor = np.column_stack([circle(rx * 0.70, n, centre, squash), np.full(n, z[0])])
-    floor_top = np.column_stack([circle(rx * 0.72, n, centre, squash), np.full(n, z[0] + 0.012)])
-    from pipeline.corpus.furniture.solids import stack
 
-    return [stack([floor, floor_top]), *shell(rings[0], rings[1])]
+    def oval(scale: float, height: float) -> NDArray[np.float64]:
+        return np.column_stack([circle(rx * scale, 24, centre, ry / rx), np.full(24, height)])
+
+    low = z[0] + 0.012
+    wall = shell([oval(0.72, low), oval(1.0, z[1])], [oval(0.66, low), oval(0.94, z[1])])
+    return [stack([oval(0.70, z[0]), oval(0.72, low)]), *wall]

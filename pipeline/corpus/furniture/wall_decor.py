@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Finish, Pattern, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.panels import Rect, frame
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, circle, revolve, ring, rod, slab, standing
+from pipeline.corpus.furniture.solids import Interval, Solid, Vector, around, box, circle, polar, revolve, ring, rod, slab, standing
 from pipeline.style import Color
 
 INKS: tuple[tuple[Color, Color], ...] = (
@@ -64,40 +62,40 @@ def mirror(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         return Shape(pieces("frame", frame_boards(w, h, rim, (-back, back), 0.004), frame) + pieces("mirror", glass, MIRROR))
     r = min(w, h) / 2
     rim = 0.6 * r if form == "sunburst" else 0.93 * r
+    outer = 1.06 * rim if form == "sunburst" else r
     parts = pieces("mirror", standing([slab(circle(rim, 36), (0.0, 0.006))], (0, back - 0.004, h / 2)), MIRROR)
-    if form == "sunburst":
-        hoop = ring((1.06 * rim, 1.06 * rim), (rim, rim), (0.0, d), 36)
-        rays = [rod((1.06 * rim * math.cos(a), back - 0.012, h / 2 + 1.06 * rim * math.sin(a)), (q * math.cos(a), back - 0.012, h / 2 + q * math.sin(a)), 0.007, 0.002, 6)
-                for k, a in enumerate(turns(24)) for q in (r if k % 2 == 0 else 0.84 * r,)]  # fmt: skip
-        return Shape(parts + pieces("frame", standing(hoop, (0, back, h / 2)), frame) + pieces("rays", rays, frame))
-    return Shape(parts + pieces("frame", standing(ring((r, r), (rim, rim), (0.0, d), 36), (0, back, h / 2)), frame))
+    parts += pieces("frame", standing(ring((outer, outer), (rim, rim), (0.0, d), 36), (0, back, h / 2)), frame)
+    if form != "sunburst":
+        return Shape(parts)
+    y, lengths = back - 0.012, (r, 0.84 * r)
+    rays = [rod(_upright(outer, a, y, h / 2), _upright(lengths[k % 2], a, y, h / 2), 0.007, 0.002, 6) for k, a in enumerate(turns(24))]
+    return Shape(parts + pieces("rays", rays, frame))
 
 
 def clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a round wall clock with a dial, or one with bare marks on a ring."""
     w, d, h = size
     back, r = d / 2, w / 2
+    at = (0, back, h / 2)
     rim = scheme.handle if rng.random() < 0.6 else scheme.timber
     if form == "dial":
-        face = Finish("dial", (0.82, 0.81, 0.78) if rng.random() < 0.7 else (0.04, 0.04, 0.045), 0.5, pattern="dial", density=900)
-        ink: Color = (0.03, 0.03, 0.03) if face.color[0] > 0.5 else (0.85, 0.83, 0.78)
-        face = Finish("dial", face.color, 0.5, pattern="dial", density=900, second=ink)
-        disc = standing([slab(circle(0.9 * r, 32), (0.0, 0.5 * d))], (0, back, h / 2))
-        return Shape(
-            pieces("dial", disc, face)
-            + pieces("rim", standing(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), (0, back, h / 2)), rim)
-        )
-    hub = standing(revolve([(0.2 * r, 0.0), (0.2 * r, 0.7 * d), (0.12 * r, d)], 20), (0, back, h / 2))
-    parts = pieces("ring", standing(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), (0, back, h / 2)), rim) + pieces(
-        "hub", hub, rim
-    )
-    y = (back - 0.8 * d, back - 0.4 * d)
+        light = rng.random() < 0.7
+        face: tuple[Color, Color] = ((0.82, 0.81, 0.78), (0.03, 0.03, 0.03)) if light else ((0.04, 0.04, 0.045), (0.85, 0.83, 0.78))
+        dial = Finish("dial", face[0], 0.5, pattern="dial", density=900, second=face[1])
+        parts = pieces("dial", standing([slab(circle(0.9 * r, 32), (0.0, 0.5 * d))], at), dial)
+        return Shape(parts + pieces("rim", standing(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), at), rim))
+    hub = standing(revolve([(0.2 * r, 0.0), (0.2 * r, 0.7 * d), (0.12 * r, d)], 20), at)
+    hoop = standing(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), at)
+    y, bar_y = (back - 0.8 * d, back - 0.4 * d), (back - 0.6 * d, back - 0.45 * d)
     marks = [box(around(0.02 * r), y, (0.74 * r, r)).turned("y", a).moved((0, 0, h / 2)) for a in turns(12)]
-    hands = [
-        box(around(0.015 * r), (back - 0.6 * d, back - 0.45 * d), (0.2 * r, q * r)).turned("y", a).moved((0, 0, h / 2))
-        for q, a in ((0.5, 1.05), (0.72, -1.05))
-    ]
-    bars = [rod((0.2 * r * math.cos(a), back - 0.15 * d, h / 2 + 0.2 * r * math.sin(a)), (0.8 * r * math.cos(a), back - 0.15 * d, h / 2 + 0.8 * r * math.sin(a)), 0.1 * d, n=6)
-            for a in turns(4)]  # fmt: skip
-    dark = Finish("marks", shade(rng, FABRICS["charcoal"], 0.1), 0.5, density=900)
-    return Shape(parts + pieces("spokes", bars, rim) + pieces("marks", marks, rim) + pieces("hands", hands, dark))
+    hands = [box(around(0.015 * r), bar_y, (0.2 * r, q * r)).turned("y", a).moved((0, 0, h / 2)) for q, a in ((0.5, 1.05), (0.72, -1.05))]
+    spokes = [(_upright(0.2 * r, a, back - 0.15 * d, h / 2), _upright(0.8 * r, a, back - 0.15 * d, h / 2)) for a in turns(4)]
+    parts = pieces("ring", hoop, rim) + pieces("hub", hub, rim)
+    parts += pieces("spokes", [rod(*ends, 0.1 * d, n=6) for ends in spokes], rim) + pieces("marks", marks, rim)
+    return Shape(parts + pieces("hands", hands, Finish("marks", shade(rng, FABRICS["charcoal"], 0.1), 0.5, density=900)))
+
+
+def _upright(radius: float, angle: float, y: float, z: float) -> Vector:
+    """Return the point at an angle around (y, z), in a plane that faces the front."""
+    x, up = polar(radius, angle)
+    return (x, y, z + up)
