@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
@@ -11,7 +9,7 @@ from pipeline.corpus.furniture.dining_tables import cased_table, legged_table
 from pipeline.corpus.furniture.finishes import MIRROR, Scheme
 from pipeline.corpus.furniture.panels import Rect, frame
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, join_shapes, pieces, translate
-from pipeline.corpus.furniture.solids import around, box, revolve, ring, standing
+from pipeline.corpus.furniture.solids import Interval, around, box, revolve, ring, split, standing
 from pipeline.corpus.furniture.storage import front_style
 
 
@@ -19,32 +17,30 @@ def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     """Build a desk with a pedestal of drawers, a row of drawers, or a plain top; tall ones carry a shelf at the back."""
     w, d, h = size
     work = min(h, 0.78) if h > 0.95 else h
-    hutch = h - work
     if form == "pedestal":
         shape = _pedestal_desk(rng, (w, d, work), scheme)
     elif form == "drawers":
         shape = cased_table(rng, (w, d, work), scheme, drawer_height=0.11, count=2 if w < 1.5 else 3)
     else:
-        shape = legged_table(rng, (w, d, work), scheme, without="block bun horse")
-        shape = Shape(
-            shape.base + pieces("modesty", box(around(0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05)), scheme.body)
-        )
-    if hutch > 0.1:
-        shape = join_shapes(shape, Shape(_hutch(w, d, work, hutch, scheme)))
+        table = legged_table(rng, (w, d, work), scheme, without="block bun horse")
+        panel = box(around(0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05))
+        shape = Shape(table.base + pieces("modesty", panel, scheme.body))
+    if h - work > 0.1:
+        shape = join_shapes(shape, Shape(_hutch(w, d, (work, h), scheme)))
     return shape
 
 
-def _hutch(w: float, d: float, z: float, height: float, scheme: Scheme) -> Pieces:
-    """Return a shelf that stands at the back of a desk."""
-    depth = min(0.24, 0.4 * d)
-    y = (d / 2 - depth, d / 2)
-    count = max(1, round(w / 0.7))
-    xs = np.linspace(-w / 2 + 0.01, w / 2 - 0.01 - 0.018, count + 1)
-    parts = pieces("hutch_sides", [box((x, x + 0.018), y, (z, z + height - 0.018)) for x in xs], scheme.body)
-    parts += pieces("hutch_top", box(around(w / 2 - 0.01), y, (z + height - 0.018, z + height), 0.002), scheme.body)
-    middle = z + 0.55 * height
+def _hutch(w: float, d: float, z: Interval, scheme: Scheme) -> Pieces:
+    """Return a shelf that stands at the back of a desk, over heights `z`."""
+    depth, t = min(0.24, 0.4 * d), 0.018
+    y, top, height = (d / 2 - depth, d / 2), z[1] - t, z[1] - z[0]
+    spans = split((-w / 2 + 0.01, w / 2 - 0.01 - t), max(1, round(w / 0.7)))
+    sides = [box((x, x + t), y, (z[0], top)) for x in (*(a for a, _ in spans), spans[-1][1])]
+    parts = pieces("hutch_sides", sides, scheme.body)
+    parts += pieces("hutch_top", box(around(w / 2 - 0.01), y, (top, z[1]), 0.002), scheme.body)
+    middle = z[0] + 0.55 * height
     if height > 0.3:
-        boards = [box((a + 0.018, b), (y[0] + 0.01, y[1]), (middle, middle + 0.016)) for a, b in itertools.pairwise(xs)]
+        boards = [box((a + t, b), (y[0] + 0.01, y[1]), (middle, middle + 0.016)) for a, b in spans]
         parts += pieces("hutch_boards", boards, scheme.body)
     return parts
 
@@ -81,24 +77,19 @@ def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     table = cased_table(rng, (w, d, work), scheme, drawer_height=0.12, count=2 if w > 0.9 else 1)
     if h - work < 0.2:
         return table
-    tall = h - work
     y = d / 2 - 0.05
-    base: Pieces
     if form == "round_mirror":
-        r = min(0.47 * tall, 0.4 * w)
-        z = h - r
+        r = min(0.47 * (h - work), 0.4 * w)
+        z, wood, feet = h - r, scheme.accent, "mirror_stem"
         glass = standing(revolve([(0.93 * r, 0.0), (0.93 * r, 0.006)], 28), (0, y, z))
         rim = standing(ring((r, r), (0.93 * r, 0.93 * r), (-0.008, 0.012), 28), (0, y, z))
-        stem = box((-0.02, 0.02), (y + 0.012, y + 0.03), (work, z), 0.003)
-        base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", rim, scheme.accent, group="mirror")
-        base += pieces("mirror_stem", stem, scheme.accent)
+        stand = [box((-0.02, 0.02), (y + 0.012, y + 0.03), (work, z), 0.003)]
     else:
-        half = min(0.4 * w, 0.45)
+        half, wood, feet = min(0.4 * w, 0.45), scheme.body, "mirror_feet"
         outer = Rect((-half, half), (work + 0.03, h), y)
-        pane = Rect(around(half - 0.035), (outer.z[0] + 0.035, h - 0.035), y)
-        rim = frame(outer, pane, (y, y + 0.024), 0.003)
-        feet = [box(around(0.02, s * 0.7 * half), (y + 0.004, y + 0.02), (work, work + 0.03)) for s in (-1, 1)]
+        pane = outer.shrunk(0.035)
         glass = [box(pane.x, (y + 0.006, y + 0.014), pane.z)]
-        base = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", rim, scheme.body, group="mirror")
-        base += pieces("mirror_feet", feet, scheme.body)
-    return join_shapes(table, Shape(base))
+        rim = frame(outer, pane, (y, y + 0.024), 0.003)
+        stand = [box(around(0.02, s * 0.7 * half), (y + 0.004, y + 0.02), (work, work + 0.03)) for s in (-1, 1)]
+    mirror = pieces("mirror", glass, MIRROR, group="mirror") + pieces("mirror_frame", rim, wood, group="mirror")
+    return join_shapes(table, Shape(mirror + pieces(feet, stand, wood)))

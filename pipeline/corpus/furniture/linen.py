@@ -9,7 +9,19 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import FABRICS, PAPER, Finish, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, circle, cushion, inset, rod, rounded_rectangle, slab, standing
+from pipeline.corpus.furniture.solids import (
+    Interval,
+    around,
+    board,
+    box,
+    circle,
+    cushion,
+    inset,
+    rod,
+    slab,
+    split,
+    standing,
+)
 
 TERRY = ("snow_cloth", "cream_cloth", "grey_cloth", "linen", "blue_cloth", "mint_cloth", "taupe_cloth", "rust_cloth", "charcoal")
 
@@ -102,13 +114,14 @@ def bath_mat(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         count = max(5, round(w / 0.09))
         step = w / count
         slats = [box((-w / 2 + k * step, -w / 2 + (k + 0.8) * step), around(d / 2), (0.3 * h, h), 0.002) for k in range(count)]
-        rails = [box(around(w / 2), around(0.015, s * 0.35 * d), (0.0, 0.3 * h)) for s in (-1, 1)]
-        return Shape(pieces("mat", slats + rails, scheme.timber))
+        slats += [box(around(w / 2), around(0.015, s * 0.35 * d), (0.0, 0.3 * h)) for s in (-1, 1)]
+        return Shape(pieces("mat", slats, scheme.timber))
     cloth = terry(rng, scheme)
-    edge = rounded_rectangle(around(w / 2), around(d / 2), 0.03, 2)
-    inner = rounded_rectangle(around(w / 2 - 0.05), around(d / 2 - 0.05), 0.02, 2)
     pile = replace(cloth, name="pile", color=tuple(0.85 * c for c in cloth.color))  # type: ignore[arg-type]
-    return Shape(pieces("mat", slab(edge, (0.0, 0.75 * h)), cloth) + pieces("pile", slab(inner, (0.75 * h, h)), pile))
+    mat = board(around(w / 2), around(d / 2), (0.0, 0.75 * h), 0.03, 2)
+    return Shape(
+        pieces("mat", mat, cloth) + pieces("pile", board(around(w / 2 - 0.05), around(d / 2 - 0.05), (0.75 * h, h), 0.02, 2), pile)
+    )
 
 
 def blind(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -116,24 +129,22 @@ def blind(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     w, d, h = size
     color = FABRICS[pick(rng, "cream_cloth linen grey_cloth snow_cloth taupe_cloth")]
     cloth = Finish("blind", shade(rng, color, 0.06), 0.9, pattern="weave", density=300)
-    rail = box(around(w / 2), around(d / 2), (h - 0.05, h), 0.004)
+    top = h - 0.05
+    rail = box(around(w / 2), around(d / 2), (top, h), 0.004)
     if form == "roller":
-        sheet = box(around(w / 2 - 0.01), (-0.0015, 0.0015), (0.02, h - 0.05))
+        sheet = box(around(w / 2 - 0.01), (-0.0015, 0.0015), (0.02, top))
         hem = rod((-w / 2 + 0.01, 0, 0.012), (w / 2 - 0.01, 0, 0.012), 0.012, n=8)
         return Shape(pieces("rail", rail, scheme.handle) + pieces("cloth", [sheet, hem], cloth))
+    x = around(w / 2 - 0.005)
     if form == "roman":
         folds = max(3, round(h / 0.22))
-        step = (h - 0.05) / folds
-        laps = [cushion(around(w / 2 - 0.005), around(0.42 * d), (k * step, (k + 1) * step - 0.004), 0.3 * d, 2) for k in range(folds)]
+        laps = [cushion(x, around(0.42 * d), (low, high - 0.004), 0.3 * d, 2) for low, high in split((0.0, top), folds)]
         return Shape(pieces("rail", rail, cloth) + pieces("cloth", laps, cloth))
-    count = max(8, round((h - 0.05) / 0.05))
     timber = scheme.timber if rng.random() < 0.6 else Finish("slat", (0.78, 0.77, 0.74), 0.4, density=500)
-    step = (h - 0.05) / count
-    slats: list[Solid] = [
-        box(around(w / 2 - 0.005), around(0.4 * d), (-0.0015, 0.0015)).turned("x", 0.6).moved((0, 0, (k + 0.5) * step))
-        for k in range(count)
-    ]
-    cords = [box(around(0.003, s * 0.35 * w), (-0.003, 0.003), (0.0, h - 0.05)) for s in (-1, 1)]
+    slat = box(x, around(0.4 * d), (-0.0015, 0.0015)).turned("x", 0.6)
+    levels = split((0.0, top), max(8, round(top / 0.05)))
+    slats = [slat.moved((0, 0, (low + high) / 2)) for low, high in levels]
+    cords = [box(around(0.003, s * 0.35 * w), (-0.003, 0.003), (0.0, top)) for s in (-1, 1)]
     return Shape(pieces("rail", rail, timber) + pieces("slats", slats, timber) + pieces("cords", cords, cloth))
 
 
