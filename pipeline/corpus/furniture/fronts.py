@@ -20,6 +20,7 @@ Side = Literal["left", "right", "bottom", "top"]
 GAP = 0.003  # between a front and its neighbours [m]
 RUN = 0.004  # between a drawer and what it runs in [m]
 BOARD = 0.012  # walls of a drawer [m]
+TURN = 1.5 * math.pi  # of a dial [rad]
 REACHES: dict[HandleStyle, float] = {"bar": 0.032, "long": 0.032, "flat": 0.024, "knob": 0.026, "ring": 0.016, "cup": 0.022, "edge": 0.014}
 MARK = Finish("mark", (0.75, 0.75, 0.73), 0.5, density=1000)
 
@@ -87,11 +88,10 @@ def _bar(style: FrontStyle, at: Axis3, along: Spot) -> list[Solid]:
     return solids
 
 
-def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float, *, grip: Spot | None = None) -> Mover:
+def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float) -> Mover:
     """Return a door over `rect`, hinged at the front edge of one side, that opens by `upper` [rad].
 
     About the outer edge of its face a panel of any thickness turns without touching what is behind or beside it.
-    `grip` overrides where the handle sits (x, z).
     """
     (x0, x1), (z0, z1) = rect.x, rect.z
     cx, cz = rect.middle
@@ -111,18 +111,16 @@ def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float, *,
         "top": ((-1, 0, 0), (cx, rect.y, z1)),
     }
     axis, origin = axes[hinge]
-    if grip is None:
-        height = min(max(cz, z0 + 0.1 + length / 2), 1.1)
-        if z1 < 0.95 and rect.height > 0.35:  # low cabinets are gripped near the top
-            height = z1 - 0.06 - length / 2
-        if z0 > 1.1:  # wall units near the bottom
-            height = z0 + 0.06 + length / 2
-        height = min(max(height, z0 + length / 2 + 0.02), z1 - length / 2 - 0.02)
-        grips = {"left": (x1 - inset, height), "right": (x0 + inset, height), "bottom": (cx, z1 - inset), "top": (cx, z0 + inset)}
-        grip = grips[hinge]
+    height = min(max(cz, z0 + 0.1 + length / 2), 1.1)
+    if z1 < 0.95 and rect.height > 0.35:  # low cabinets are gripped near the top
+        height = z1 - 0.06 - length / 2
+    if z0 > 1.1:  # wall units near the bottom
+        height = z0 + 0.06 + length / 2
+    height = min(max(height, z0 + length / 2 + 0.02), z1 - length / 2 - 0.02)
+    grips = {"left": (x1 - inset, height), "right": (x0 + inset, height), "bottom": (cx, z1 - inset), "top": (cx, z0 + inset)}
     if not upright:
         length = min(0.45, 0.6 * rect.width)
-    parts = panel(rect, style) + handle(style, rect, upright=upright, at=grip, length=length)
+    parts = panel(rect, style) + handle(style, rect, upright=upright, at=grips[hinge], length=length)
     return Mover(name, parts, "revolute", axis, origin, upper, "hinge_door", "door")
 
 
@@ -189,22 +187,22 @@ def lid(name: str, parts: Pieces, hinge: tuple[float, float, float], upper: floa
     return Mover(name, parts, "revolute", (-1, 0, 0), hinge, upper, "hinge_lid", "lid", UP, parent)
 
 
-def knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 0.022, turn: float = 1.5 * math.pi) -> Mover:
-    """Return a dial on a front plane that turns by `turn` [rad]; `at` is its middle on the plane."""
+def knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 0.022) -> Mover:
+    """Return a dial on a front plane; `at` is its middle on the plane."""
     profile = [(radius, 0.001), (radius, 0.35 * depth), (0.82 * radius, depth)]
     dial = standing(revolve(profile, 16), at)
     mark = box(around(0.0015, at[0]), (at[1] - depth - 0.002, at[1] - depth), (at[2], at[2] + 0.75 * radius))
     parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
-    return Mover(name, parts, "revolute", (0, 1, 0), at, turn, "hinge_knob", "knob")
+    return Mover(name, parts, "revolute", (0, 1, 0), at, TURN, "hinge_knob", "knob")
 
 
-def top_knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 0.018, turn: float = 1.5 * math.pi) -> Mover:
+def top_knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float) -> Mover:
     """Return a dial on a level plane, seen from above; `at` is its middle on the plane."""
     dial = revolve([(radius, at[2] + 0.001), (radius, at[2] + 0.4 * depth), (0.85 * radius, at[2] + depth)], 12, (at[0], at[1]))
     top = at[2] + depth
     mark = box(around(0.0015, at[0]), (at[1] - 0.75 * radius, at[1]), (top, top + 0.002))
     parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
-    return Mover(name, parts, "revolute", (0, 0, -1), at, turn, "hinge_knob", "knob", UP)
+    return Mover(name, parts, "revolute", (0, 0, -1), at, TURN, "hinge_knob", "knob", UP)
 
 
 def button(name: str, x: Interval, z: Interval, y: float, finish: Finish) -> Mover:

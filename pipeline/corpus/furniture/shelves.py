@@ -76,7 +76,7 @@ def shelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
         how = replace(case_style(rng, scheme, style, "none plinth", (0, 0)), overhang=0.0)
         rows = max(1, round(size[2] / 0.36))
         count = max(1, round(size[0] / 0.4))
-        columns = [Column(1, tuple(Cell("open") for _ in range(rows)))] * count
+        columns = [Column(1, (Cell("open"),) * rows)] * count
         shape = case(size, columns, how, reserve=0.0)
         return Shape(shape.base + books(rng, shape))
     return ladder_shelf(size, scheme, max(2, round(size[2] / (0.3 if form == "frame" else 0.4))))

@@ -45,7 +45,7 @@ def nightstand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     how = case_style(rng, scheme, style, "tapered square sled plinth hairpin", (0.07, min(0.2, 0.35 * size[2])))
     if form == "drawers":
         count = 2 if size[2] - how.feet_height < 0.5 else 3
-        cells = tuple(Cell("drawer") for _ in range(count))
+        cells = (Cell("drawer"),) * count
     elif form == "shelf_drawer":
         cells = (Cell("drawer", 1.0), Cell("open", float(rng.uniform(0.9, 1.6))))
     else:
@@ -103,26 +103,21 @@ def _rails(shape: Shape, scheme: Scheme) -> Pieces:
 
 def cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a chest: a grid of drawers, wide or small, a tallboy, drawers over doors, or doors."""
-    style = front_style(rng, scheme)
-    how = case_style(rng, scheme, style, "tapered square sled plinth", (0.08, 0.18))
+    how = case_style(rng, scheme, front_style(rng, scheme), "tapered square sled plinth", (0.08, 0.18))
     inner = size[2] - how.feet_height
     count = max(1, min(3, round(size[0] / 0.55)))
     rows = max(2, min(6, round(inner / 0.22)))
     if form == "tallboy":
-        count = 1
-        columns = [Column(1, tuple(Cell("drawer", 0.75 if k == 0 else 1.0) for k in range(rows)))]
+        columns = [Column(1, (Cell("drawer", 0.75), *(Cell("drawer"),) * (rows - 1)))]
     elif form == "apothecary":
-        count = max(2, min(4, round(size[0] / 0.36)))
-        rows = max(2, min(3, round(inner / 0.28)))
-        columns = [Column(1, tuple(Cell("drawer") for _ in range(rows)))] * count
+        columns = [Column(1, (Cell("drawer"),) * max(2, min(3, round(inner / 0.28))))] * max(2, min(4, round(size[0] / 0.36)))
     elif form == "drawers":
         rows = min(rows, 12 // count)
-        columns = [Column(1, tuple(Cell("drawer") for _ in range(rows))) for _ in range(count)]
-        if rows >= 4 and count >= 2:  # a row of small drawers on top of wide ones
-            columns = [Column(1, tuple(Cell("drawer", 0.7 if k == 0 else 1.0) for k in range(rows)))] * count
+        small = rows >= 4 and count >= 2  # a row of small drawers on top of wide ones
+        columns = [Column(1, (Cell("drawer", 0.7 if small else 1.0), *(Cell("drawer"),) * (rows - 1)))] * count
     elif form == "mixed":
         columns = [Column(1, (Cell("drawer", 0.5), doors_of(rng, size[0] / count, 1.5, 1))) for _ in range(count)]
-        columns[0] = Column(1, tuple(Cell("drawer") for _ in range(rows)))
+        columns[0] = Column(1, (Cell("drawer"),) * rows)
     else:
         columns = [Column(1, (doors_of(rng, size[0] / count, 1.0, max(1, rows // 2)),)) for _ in range(count)]
     return case(size, columns, how)
@@ -179,7 +174,7 @@ def sideboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         return case(size, [Column(1, (Cell("slide", 1, 1),))], replace(how, style=looks))
     if form == "mixed":
         rows = max(2, round((h - how.feet_height) / 0.2))
-        columns[count // 2] = Column(1.1, tuple(Cell("drawer") for _ in range(rows)))
+        columns[count // 2] = Column(1.1, (Cell("drawer"),) * rows)
     return case(size, columns, how)
 
 
@@ -190,7 +185,7 @@ def tv_stand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     how = case_style(rng, scheme, style, "tapered sled square plinth", (0.06, min(0.18, 0.35 * h)))
     count = max(2, min(4, round(w / 0.58)))
     rows = 2 if h - how.feet_height > 0.42 else 1
-    drawers = tuple(Cell("drawer") for _ in range(rows))
+    drawers = (Cell("drawer"),) * rows
     if form == "drawers":
         columns = [Column(1, drawers)] * count
     elif form == "doors":
@@ -241,5 +236,5 @@ def shoe_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         columns = [Column(1, (Cell("pair", 1, max(2, round(h / 0.25))),)) for _ in range(count)]
         return case(size, columns, how)
     rows = max(2, round((h - how.feet_height) / 0.38))
-    shape = case(size, [Column(1, tuple(Cell("flap") for _ in range(rows)))] * count, how)
+    shape = case(size, [Column(1, (Cell("flap"),) * rows)] * count, how)
     return Shape(shape.base, tuple(replace(m, upper=math.radians(50)) for m in shape.movers))
