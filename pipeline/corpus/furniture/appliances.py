@@ -23,22 +23,9 @@ from pipeline.corpus.furniture.finishes import (
     pick,
 )
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
+from pipeline.corpus.furniture.intervals import Interval, around, corners, edges, inset
 from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import (
-    Interval,
-    around,
-    box,
-    circle,
-    corners,
-    edges,
-    inset,
-    revolve,
-    ring,
-    shell,
-    slab,
-    standing,
-    strips,
-)
+from pipeline.corpus.furniture.solids import box, circle, revolve, ring, shell, slab, standing, strips
 
 FRONTS = (ENAMEL, STEEL, GRAPHITE)
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import lean, prism
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
+from pipeline.corpus.furniture.intervals import around
 from pipeline.corpus.furniture.shape import Pieces, pieces
-from pipeline.corpus.furniture.solids import Solid, around, beam, box, rod
+from pipeline.corpus.furniture.solids import Solid, beam, box, rod
 from pipeline.corpus.furniture.upholstery import upright_pad
 
 

@@ -10,24 +10,9 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import split_bent_quads
 from pipeline.corpus.furniture.finishes import CERAMIC, GLASS, PLASTIC_WHITE, STEEL, Scheme
 from pipeline.corpus.furniture.fronts import lid, top_button
+from pipeline.corpus.furniture.intervals import Interval, around, between
 from pipeline.corpus.furniture.shape import UP, Mover, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import (
-    Interval,
-    around,
-    between,
-    box,
-    circle,
-    cushion,
-    hull,
-    revolve,
-    ring,
-    rod,
-    rounded_rectangle,
-    shell,
-    slab,
-    stack,
-    walls,
-)
+from pipeline.corpus.furniture.solids import box, circle, cushion, hull, revolve, ring, rod, rounded_rectangle, shell, slab, stack, walls
 
 
 def _oval(rx: float, y: Interval, z: float) -> NDArray[np.float64]:

@@ -8,9 +8,10 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import tube
 from pipeline.corpus.furniture.finishes import BEDDING, MATTRESS, Scheme, cane
+from pipeline.corpus.furniture.intervals import Interval, around, edges, inset, split
 from pipeline.corpus.furniture.legs import leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, cushion, edges, inset, pillow, rod, split
+from pipeline.corpus.furniture.solids import Solid, box, cushion, pillow, rod
 from pipeline.corpus.furniture.upholstery import channels, duvet, throw_pillow, tufted_panel
 
 SOFT = frozenset({"upholstered", "tufted", "wing"})

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.solids import Face, Interval, Solid, Spot, Vector, slab, stack
+from pipeline.corpus.furniture.intervals import Interval, Spot
+from pipeline.corpus.furniture.solids import Face, Solid, Vector, slab, stack
 
 Points = NDArray[np.float64]
 

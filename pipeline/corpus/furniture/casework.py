@@ -12,8 +12,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.fronts import GAP, FrontStyle, Rect, Side, door, drawer, reach, sliding_door
+from pipeline.corpus.furniture.intervals import Interval, around, inset
 from pipeline.corpus.furniture.shape import Mover, Piece, Pieces, Shape, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, beam, box, inset, rod
+from pipeline.corpus.furniture.solids import Solid, beam, box, rod
 
 Feet = Literal["plinth", "tapered", "square", "sled", "none", "hairpin"]
 CellKind = Literal["drawer", "left", "right", "pair", "open", "flap", "lift", "blank", "slide"]

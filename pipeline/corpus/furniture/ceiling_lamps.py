@@ -9,10 +9,11 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Scheme, pick
+from pipeline.corpus.furniture.intervals import around, polar
 from pipeline.corpus.furniture.lamps import turned_along
 from pipeline.corpus.furniture.shades import bulb, cord, rose, shade, shade_word
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import around, box, circle, cushion, polar, revolve, ring, rod, slab
+from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, ring, rod, slab
 
 CRYSTAL = replace(GLOW, name="crystal", color=(0.82, 0.86, 0.88), roughness=0.05, opacity=0.55, density=2500)
 THIN = 0.0035  # radius of a cord

@@ -8,21 +8,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.fronts import Rect, lid
+from pipeline.corpus.furniture.intervals import Interval, around, edges, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import (
-    Interval,
-    Solid,
-    around,
-    box,
-    circle,
-    edges,
-    inset,
-    revolve,
-    ring,
-    slab,
-    stack,
-    walls,
-)
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab, stack, walls
 
 CARDBOARD = Finish("cardboard", (0.40, 0.26, 0.14), 0.9, pattern="speckle", density=200)
 

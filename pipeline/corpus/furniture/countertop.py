@@ -9,22 +9,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, ENAMEL, GLASS, GRAPHITE, PLASTIC, STEEL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid
+from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset
 from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, Size, pieces, staves
-from pipeline.corpus.furniture.solids import (
-    Interval,
-    Spot,
-    around,
-    between,
-    box,
-    circle,
-    cushion,
-    edges,
-    inset,
-    revolve,
-    ring,
-    rod,
-    slab,
-)
+from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, ring, rod, slab
 
 WIRE = 0.004  # radius of a bail [m]
 COFFEE = Finish("coffee", (0.03, 0.012, 0.006), 0.2, density=1000)

@@ -7,9 +7,10 @@ import numpy as np
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.dining_tables import cased_table, legged_table
 from pipeline.corpus.furniture.finishes import MIRROR, Scheme
+from pipeline.corpus.furniture.intervals import Interval, around, split
 from pipeline.corpus.furniture.panels import Rect, frame
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, join_shapes, pieces, translate
-from pipeline.corpus.furniture.solids import Interval, around, box, revolve, ring, split, standing
+from pipeline.corpus.furniture.solids import box, revolve, ring, standing
 from pipeline.corpus.furniture.storage import front_style
 
 

@@ -11,23 +11,10 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import Finish, Scheme
+from pipeline.corpus.furniture.intervals import Interval, Spot, around, polar, split
 from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import (
-    Interval,
-    Solid,
-    Spot,
-    around,
-    beam,
-    box,
-    circle,
-    polar,
-    revolve,
-    rod,
-    rounded_rectangle,
-    slab,
-    split,
-)
+from pipeline.corpus.furniture.solids import Solid, beam, box, circle, revolve, rod, rounded_rectangle, slab
 from pipeline.corpus.furniture.storage import case_style, front_style
 
 

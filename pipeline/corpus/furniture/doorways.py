@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, pick
+from pipeline.corpus.furniture.intervals import around, edges, inset
 from pipeline.corpus.furniture.panels import FrontStyle, Rect, panel
 from pipeline.corpus.furniture.shape import Axis3, Mover, Pieces, Shape, Size, group_pieces, pieces
-from pipeline.corpus.furniture.solids import around, box, edges, inset, revolve
+from pipeline.corpus.furniture.solids import box, revolve
 
 LEAF = 0.04  # thickness of a leaf [m]
 LEVER = 0.055  # how far a lever stands out of its leaf [m]

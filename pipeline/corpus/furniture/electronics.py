@@ -9,8 +9,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GRAPHITE, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, lid, top_button, top_knob
+from pipeline.corpus.furniture.intervals import around, edges, inset
 from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, cushion, edges, inset, revolve, slab, standing
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, slab, standing
 
 SILVER = Finish("aluminium", (0.60, 0.61, 0.62), 0.3, 0.8, density=1400)
 DARK = Finish("shell_dark", (0.035, 0.036, 0.04), 0.4, density=1200)

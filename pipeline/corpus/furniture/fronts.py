@@ -9,9 +9,10 @@ from typing import Literal
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.intervals import Interval, Spot, around, inset
 from pipeline.corpus.furniture.panels import LIP, FrontStyle, HandleStyle, PanelStyle, Rect, panel
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, hull, inset, revolve, ring, rod, standing
+from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, standing
 
 __all__ = ["FrontStyle", "HandleStyle", "PanelStyle", "Rect", "button", "door", "drawer", "handle", "knob", "lid", "panel", "sliding_door"]
 

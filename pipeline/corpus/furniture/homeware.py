@@ -6,22 +6,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
 from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, pick, shade
+from pipeline.corpus.furniture.intervals import around, corners, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import (
-    Solid,
-    around,
-    box,
-    circle,
-    corners,
-    cushion,
-    pillow,
-    polar,
-    revolve,
-    ring,
-    rod,
-    slab,
-    standing,
-)
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, pillow, revolve, ring, rod, slab, standing
 from pipeline.corpus.furniture.tableware import CLEAR, glaze
 from pipeline.corpus.furniture.wall_decor import INKS, frame_boards
 from pipeline.style import Color

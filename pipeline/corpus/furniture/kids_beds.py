@@ -7,8 +7,9 @@ import numpy as np
 from pipeline.corpus.furniture.beds import bedding
 from pipeline.corpus.furniture.bent import prism
 from pipeline.corpus.furniture.finishes import PLASTIC, Scheme
+from pipeline.corpus.furniture.intervals import around, edges, inset
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import around, box, edges, inset, rod
+from pipeline.corpus.furniture.solids import box, rod
 
 
 def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

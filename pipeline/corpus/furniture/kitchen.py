@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import CERAMIC, MARBLE, PLASTIC, STEEL, STONE, Finish, Scheme, one_of
 from pipeline.corpus.furniture.fronts import reach
+from pipeline.corpus.furniture.intervals import Interval, Spot, around
 from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, join_shapes, pieces, staves
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, revolve, rod, shell, stack, strips, walls
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, rod, shell, stack, strips, walls
 from pipeline.corpus.furniture.storage import front_style
 
 PLINTH = 0.1  # height of a kitchen unit's recessed plinth [m]

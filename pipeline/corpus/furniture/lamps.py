@@ -9,9 +9,10 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Scheme
+from pipeline.corpus.furniture.intervals import around, polar
 from pipeline.corpus.furniture.shades import shade, shade_word
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import around, box, circle, polar, revolve, rod, slab, standing
+from pipeline.corpus.furniture.solids import box, circle, revolve, rod, slab, standing
 
 
 def turned_along(shape: Shape) -> Shape:

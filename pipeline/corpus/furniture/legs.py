@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import Finish, Scheme, one_of
-from pipeline.corpus.furniture.solids import Solid, Spot, around, beam, between, box, inset, polar, revolve, rod, split, stack
+from pipeline.corpus.furniture.intervals import Spot, around, between, inset, polar, split
+from pipeline.corpus.furniture.solids import Solid, beam, box, revolve, rod, stack
 
 METAL = frozenset({"hairpin", "pipe", "blade", "sled", "cross"})
 WIDE = frozenset({"sled", "cross", "plank"})  # forms that join the two legs of a side

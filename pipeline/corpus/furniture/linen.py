@@ -8,20 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import FABRICS, PAPER, Finish, Scheme, one_of, pick, shade
+from pipeline.corpus.furniture.intervals import Interval, around, inset, split
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import (
-    Interval,
-    around,
-    board,
-    box,
-    circle,
-    cushion,
-    inset,
-    rod,
-    slab,
-    split,
-    standing,
-)
+from pipeline.corpus.furniture.solids import board, box, circle, cushion, rod, slab, standing
 
 TERRY = ("snow_cloth", "cream_cloth", "grey_cloth", "linen", "blue_cloth", "mint_cloth", "taupe_cloth", "rust_cloth", "charcoal")
 
@@ -98,12 +87,10 @@ def throw(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     w, d, h = size
     pattern = pick(rng, "knit check stripe boucle")
     cloth = Finish("throw", shade(rng, scheme.second.color, 0.1), 0.95, pattern=pattern, density=120)  # type: ignore[arg-type]
-    layers = [cushion(around(w / 2), (-d / 2 + 0.04, d / 2), (k * h / 3, (k + 1) * h / 3), 0.4 * h / 3, 2) for k in range(3)]
+    layers = [cushion(around(w / 2), (-d / 2 + 0.04, d / 2), z, 0.4 * h / 3, 2) for z in split((0.0, h), 3)]
     yarn = replace(cloth, name="yarn", pattern="plain")
-    ends = [
-        box((float(x), float(x) + 0.012), (-d / 2, -d / 2 + 0.045), (0.35 * h, 0.42 * h))
-        for x in np.linspace(-w / 2 + 0.02, w / 2 - 0.032, 12)
-    ]
+    xs = np.linspace(-w / 2 + 0.02, w / 2 - 0.032, 12).tolist()
+    ends = [box((x, x + 0.012), (-d / 2, -d / 2 + 0.045), (0.35 * h, 0.42 * h)) for x in xs]
     return Shape(pieces("throw", layers, cloth) + pieces("yarn", ends, yarn))
 
 

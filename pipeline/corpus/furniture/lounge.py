@@ -8,9 +8,10 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube, turns, upright, wall
 from pipeline.corpus.furniture.finishes import PLASTIC, Finish, Scheme, cane, shade
+from pipeline.corpus.furniture.intervals import around, between, corners, inset, polar
 from pipeline.corpus.furniture.legs import draw_kind, leg_finish, legs
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, beam, between, box, corners, cushion, inset, polar, revolve, rod, slab, stack
+from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, slab, stack
 from pipeline.corpus.furniture.upholstery import piping, seat_cushion, upright_pad
 
 

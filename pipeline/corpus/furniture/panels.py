@@ -9,8 +9,9 @@ from typing import Literal
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GLASS, MIRROR, Finish
+from pipeline.corpus.furniture.intervals import Interval, around, inset
 from pipeline.corpus.furniture.shape import Pieces, group_pieces, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, box, inset, slab, stack
+from pipeline.corpus.furniture.solids import Solid, box, slab, stack
 
 PanelStyle = Literal["slab", "shaker", "raised", "glass", "dark_glass", "slats", "reeded", "cane", "mirror"]
 HandleStyle = Literal["bar", "long", "flat", "knob", "ring", "cup", "edge", "groove", "none"]

@@ -10,21 +10,10 @@ import numpy as np
 from pipeline.corpus.furniture.backs import Frame, back
 from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube
 from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Scheme, cane, one_of
+from pipeline.corpus.furniture.intervals import around, between, corners
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import (
-    Solid,
-    around,
-    beam,
-    between,
-    board,
-    box,
-    corners,
-    cushion,
-    revolve,
-    rod,
-    slab,
-)
+from pipeline.corpus.furniture.solids import Solid, beam, board, box, cushion, revolve, rod, slab
 from pipeline.corpus.furniture.upholstery import piping, seat_cushion
 
 TUBE = 0.011  # radius of bent steel

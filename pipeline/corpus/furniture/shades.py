@@ -10,8 +10,9 @@ import numpy as np
 from pipeline.corpus.furniture.bent import band, curve, tube, turns
 from pipeline.corpus.furniture.finishes import GLOW, Finish, Scheme, cane, one_of
 from pipeline.corpus.furniture.finishes import shade as tinted
+from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
 from pipeline.corpus.furniture.shape import Pieces, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, Spot, around, box, circle, corners, polar, revolve, ring, rod, slab
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab
 
 CLOTH = Finish("shade_cloth", (0.80, 0.75, 0.65), 0.9, density=150)
 WALL = 0.006

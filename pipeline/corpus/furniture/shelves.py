@@ -8,8 +8,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, one_of
+from pipeline.corpus.furniture.intervals import around
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import around, box
+from pipeline.corpus.furniture.solids import box
 from pipeline.corpus.furniture.storage import case_style, doors_of, front_style
 
 

@@ -9,9 +9,10 @@ import numpy as np
 from pipeline.corpus.furniture.bent import arc, band, prism, turns
 from pipeline.corpus.furniture.dining_tables import cased_table, legged_table, top, top_finish, trumpet
 from pipeline.corpus.furniture.finishes import GLASS, Scheme, cane
+from pipeline.corpus.furniture.intervals import around, polar
 from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs, pedestal
 from pipeline.corpus.furniture.shape import Shape, Size, pieces
-from pipeline.corpus.furniture.solids import around, board, circle, polar, ring, rod, slab
+from pipeline.corpus.furniture.solids import board, circle, ring, rod, slab
 
 
 def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

@@ -8,10 +8,11 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import curve, lean, sheet, wall
 from pipeline.corpus.furniture.finishes import Scheme, one_of
+from pipeline.corpus.furniture.intervals import Interval, around, edges, inset, split
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
 from pipeline.corpus.furniture.lounge import lounge_chair
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, beam, box, cushion, edges, inset, revolve, rod, split
+from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod
 from pipeline.corpus.furniture.upholstery import bolster, channels, piping, seat_cushion, throw_pillow, tufted_panel
 
 ARMS = {"track": 0.13, "legs": 0.09, "roll": 0.2, "chesterfield": 0.2, "camelback": 0.17, "cloud": 0.22, "u_shape": 0.15}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import itertools
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -12,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-Interval = tuple[float, float]  # from, to
-Spot = tuple[float, float]  # two coordinates
+from pipeline.corpus.furniture.intervals import Interval
+
 Face = tuple[int, ...]
 Vector = Sequence[float] | NDArray[np.float64]
 
@@ -137,41 +136,6 @@ def _stack_faces(n: int, rings: int) -> tuple[Face, ...]:
         a, b = k * n, (k + 1) * n
         faces += [(a + i, a + (i + 1) % n, b + (i + 1) % n, b + i) for i in range(n)]
     return tuple(faces)
-
-
-def around(half: float, at: float = 0.0) -> Interval:
-    """Return the interval that reaches `half` to either side of `at`."""
-    return (at - half, at + half)
-
-
-def between(a: float, b: float) -> Interval:
-    """Return the interval between two numbers in either order."""
-    return (min(a, b), max(a, b))
-
-
-def corners(x: float, y: float) -> list[Spot]:
-    """Return the corners of a rectangle around the origin: (-x, -y), (-x, y), (x, -y), (x, y)."""
-    return [(sx * x, sy * y) for sx in (-1, 1) for sy in (-1, 1)]
-
-
-def edges(x: Interval, t: float) -> tuple[Interval, Interval]:
-    """Return the first and the last `t` of an interval."""
-    return (x[0], x[0] + t), (x[1] - t, x[1])
-
-
-def inset(x: Interval, by: float) -> Interval:
-    """Return the interval, `by` shorter at either end."""
-    return (x[0] + by, x[1] - by)
-
-
-def split(x: Interval, count: int, gap: float = 0.0) -> list[Interval]:
-    """Return `count` equal parts of an interval, `gap` off either end of each."""
-    return [(a + gap, b - gap) for a, b in itertools.pairwise(np.linspace(*x, count + 1).tolist())]
-
-
-def polar(radius: float, angle: float, *height: float) -> tuple[float, ...]:
-    """Return the point (2,) at an angle [rad] around the origin, or with a `height` (3,)."""
-    return (radius * math.cos(angle), radius * math.sin(angle), *height)
 
 
 def standing(solids: Iterable[Solid], at: Vector) -> list[Solid]:

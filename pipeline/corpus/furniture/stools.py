@@ -8,21 +8,10 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import arc, tube, turns, wall
 from pipeline.corpus.furniture.finishes import Finish, Scheme
+from pipeline.corpus.furniture.intervals import around, polar, split
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Shape, Size, pieces
-from pipeline.corpus.furniture.solids import (
-    around,
-    board,
-    box,
-    circle,
-    cushion,
-    polar,
-    revolve,
-    rod,
-    slab,
-    split,
-    standing,
-)
+from pipeline.corpus.furniture.solids import board, box, circle, cushion, revolve, rod, slab, standing
 from pipeline.corpus.furniture.upholstery import piping, seat_cushion, tufted_panel, upright_pad
 
 

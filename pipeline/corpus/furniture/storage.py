@@ -10,8 +10,9 @@ import numpy as np
 from pipeline.corpus.furniture.casework import Case, Cell, Column, Feet, case
 from pipeline.corpus.furniture.finishes import DARK_GLASS, LACQUERS, Finish, Scheme, pick, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, HandleStyle, PanelStyle
+from pipeline.corpus.furniture.intervals import Interval
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, rod
+from pipeline.corpus.furniture.solids import rod
 
 
 def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> FrontStyle:

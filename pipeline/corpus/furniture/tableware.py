@@ -9,23 +9,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, prism, tube
 from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, shade
+from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import (
-    Interval,
-    Solid,
-    Spot,
-    around,
-    between,
-    box,
-    circle,
-    edges,
-    inset,
-    polar,
-    revolve,
-    ring,
-    slab,
-    walls,
-)
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab, walls
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
 BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue", "barn_red", "emerald", "greige", "blush", "black")

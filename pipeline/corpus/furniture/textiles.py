@@ -9,8 +9,9 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import band
 from pipeline.corpus.furniture.finishes import CLASSIC, CLOTH_GROUNDS, FABRICS, ORIENTAL, Finish, Pattern, Scheme, cover, pick, shade
+from pipeline.corpus.furniture.intervals import around
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, around, box, circle, pillow, ring, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.solids import Solid, box, circle, pillow, ring, rod, rounded_rectangle, slab
 
 
 def rug(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:

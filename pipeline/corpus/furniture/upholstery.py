@@ -7,8 +7,9 @@ import itertools
 import numpy as np
 
 from pipeline.corpus.furniture.finishes import Finish, Scheme
+from pipeline.corpus.furniture.intervals import Interval, around, inset
 from pipeline.corpus.furniture.shape import Pieces, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, around, cushion, inset, pillow, rod, rounded_rectangle, slab
+from pipeline.corpus.furniture.solids import Solid, cushion, pillow, rod, rounded_rectangle, slab
 
 SEAM = 0.007  # height of a piping
 

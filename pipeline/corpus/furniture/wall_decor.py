@@ -6,9 +6,10 @@ import numpy as np
 
 from pipeline.corpus.furniture.bent import turns
 from pipeline.corpus.furniture.finishes import FABRICS, MIRROR, PAPER, Finish, Pattern, Scheme, one_of, pick, shade
+from pipeline.corpus.furniture.intervals import Interval, around, polar
 from pipeline.corpus.furniture.panels import Rect, frame
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Interval, Solid, Vector, around, box, circle, polar, revolve, ring, rod, slab, standing
+from pipeline.corpus.furniture.solids import Solid, Vector, box, circle, revolve, ring, rod, slab, standing
 from pipeline.style import Color
 
 INKS: tuple[tuple[Color, Color], ...] = (
