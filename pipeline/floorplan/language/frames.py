@@ -286,10 +286,9 @@ def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, in
         for j in range(start, min(len(marks), start + FARTHEST)) if start is not None else ():
             mark, end = marks[j], _matches(marks, j, second, lex)
             comma = mark.kind == "comma" and cue.startswith("thru")
-            article = first[0] in lex.sign("article_first") and mark.text.split(" ", 1)[0] in lex.sign("otherwise")
             other = mark.kind == "cue" and mark.value not in {"has", "in", "door"} and end is None
             again = named and end is None and cue == "open" and _matches(marks, j, first, lex) is not None
-            if (mark.kind in BREAKS and not comma) or article or other or again:
+            if (mark.kind in BREAKS and not comma) or other or again:
                 break
             if named and end is not None and not _goes_on(marks, end, second, lex):
                 return cue, start or 0, j, end
