@@ -9,7 +9,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.finishes import DARK_GLASS, GRAPHITE, PLASTIC, PLASTIC_WHITE, STEEL, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, lid, top_button, top_knob
-from pipeline.corpus.furniture.intervals import around, edges, inset
+from pipeline.corpus.furniture.intervals import around, edges, inset, split
 from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, slab, standing
 
@@ -27,25 +27,22 @@ def laptop(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     w, d, h = size
     finish = one_of(rng, (SILVER, DARK))
     deck = 0.56 * h
-    x, y = (-w / 2, w / 2), (-d / 2, d / 2)
-    base = pieces("deck", box(x, y, (0.0015, deck), 0.002), finish, group="deck")
-    base += pieces("feet", [box(around(0.02, sx * 0.4 * w), around(0.4 * d), (0, 0.0015)) for sx in (-1, 1)], RUBBER, group="deck")
+    x, y = around(w / 2), around(d / 2)
+    feet = [box(around(0.02, s * 0.4 * w), around(0.4 * d), (0, 0.0015)) for s in (-1, 1)]
     keys: list[Solid] = []
     rows, pitch = 5, 0.42 * d / 5
     for r in range(rows):
-        z = (deck, deck + 0.001)
-        ky = (0.38 * d - (r + 1) * pitch + 0.0015, 0.38 * d - r * pitch)
-        count = 12 if r < rows - 1 else 5
-        cells = np.linspace(-0.44 * w, 0.44 * w, count + 1)
-        keys += [box((a + 0.001, b - 0.001), ky, z) for a, b in zip(cells[:-1].tolist(), cells[1:].tolist(), strict=True)]
-    base += pieces("keys", keys, KEY if finish is SILVER else RUBBER, group="deck")
+        span = (0.38 * d - (r + 1) * pitch + 0.0015, 0.38 * d - r * pitch)
+        keys += [box(place, span, (deck, deck + 0.001)) for place in split(around(0.44 * w), 12 if r < rows - 1 else 5, 0.001)]
     pad = box(around(0.16 * w), (-0.42 * d, -0.12 * d), (deck, deck + 0.0005))
+    base = pieces("deck", box(x, y, (0.0015, deck), 0.002), finish, group="deck") + pieces("feet", feet, RUBBER, group="deck")
+    base += pieces("keys", keys, KEY if finish is SILVER else RUBBER, group="deck")
     base += pieces("touch_pad", pad, Finish("touch_pad", (0.42, 0.42, 0.43), 0.35, density=1200), group="deck")
     low = deck + 0.0035
+    pane = box(inset(x, 0.009), (y[0] + 0.014, y[1] - 0.018), (low - 0.0016, low - 0.0008))
     cover = pieces("screen_back", box(x, y, (low, h), 0.002), finish, group="screen")
     cover += pieces("bezel", box(inset(x, 0.003), (y[0] + 0.003, y[1] - 0.006), (low - 0.0008, low)), PLASTIC, group="screen")
-    pane = Finish("display", (0.03, 0.06, 0.11), 0.12, density=2500)
-    cover += pieces("display", box(inset(x, 0.009), (y[0] + 0.014, y[1] - 0.018), (low - 0.0016, low - 0.0008)), pane, group="screen")
+    cover += pieces("display", pane, Finish("display", (0.03, 0.06, 0.11), 0.12, density=2500), group="screen")
     return Shape(base, (lid("screen", cover, (0.0, d / 2, low), math.radians(125)),))
 
 
@@ -118,37 +115,33 @@ def phone(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
 def camera(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a camera: a body with a lens, a release, dials, and a flash that folds up on the larger one."""
     w, d, h = size
-    body_y = (-0.06 * d, 0.5 * d)
-    hump = 0.78 * h
-    finish = DARK if form == "reflex" or rng.random() < 0.4 else SILVER
-    top_z = hump if form == "reflex" else h - 0.012
-    base = pieces("body", cushion(around(w / 2), body_y, (0, top_z), 0.008), finish)
-    wrap = box(around(0.48 * w), (body_y[0] - 0.0006, body_y[0] + 0.002), (0.14 * top_z, 0.78 * top_z))
-    base += pieces("leather", wrap, RUBBER, group="leather")
-    r = min(0.40 * top_z, 0.26 * w)
-    front = body_y[0] + d / 2  # how far the lens stands out
-    x0, z0 = (0.05 * w if form == "reflex" else 0.12 * w), 0.48 * top_z
-    barrel = [(r, 0.0), (r, 0.35 * front), (0.88 * r, 0.36 * front), (0.88 * r, 0.55 * front)]
-    base += pieces("lens", standing(revolve(barrel, 16), (x0, body_y[0], z0)), PLASTIC, group="lens")
-    glass = standing(revolve([(0.55 * r, 0.96 * front), (0.5 * r, front)], 16), (x0, body_y[0], z0))
-    zoom = standing(revolve([(0.93 * r, 0.57 * front), (0.93 * r, 0.96 * front)], 16), (x0, body_y[0], z0))
-    ring_made = pieces("zoom_ring", zoom, RUBBER, group="zoom") + pieces("lens_glass", glass, DARK_GLASS, group="zoom")
-    at = (x0, body_y[0] - 0.57 * front, z0)
-    movers = [Mover("zoom", ring_made, "revolute", (0, 1, 0), at, 0.5 * math.pi, "hinge_knob", "knob")]
-    y = (body_y[0] + body_y[1]) / 2
-    movers.append(top_knob("mode", (0.36 * w, y, top_z), 0.11 * w if form == "reflex" else 0.085 * w, PLASTIC, depth=0.009))
+    reflex = form == "reflex"
+    face, back = -0.06 * d, 0.5 * d
+    finish = DARK if reflex or rng.random() < 0.4 else SILVER
+    top = 0.78 * h if reflex else h - 0.012
+    r, out = min(0.40 * top, 0.26 * w), face + d / 2  # how far the lens stands out
+    lens = ((0.05 if reflex else 0.12) * w, face, 0.48 * top)
+    barrel = [(r, 0.0), (r, 0.35 * out), (0.88 * r, 0.36 * out), (0.88 * r, 0.55 * out)]
+    base = pieces("body", cushion(around(w / 2), (face, back), (0, top), 0.008), finish)
+    base += pieces("leather", box(around(0.48 * w), (face - 0.0006, face + 0.002), (0.14 * top, 0.78 * top)), RUBBER, group="leather")
+    base += pieces("lens", standing(revolve(barrel, 16), lens), PLASTIC, group="lens")
+    zoom = pieces("zoom_ring", standing(revolve([(0.93 * r, 0.57 * out), (0.93 * r, 0.96 * out)], 16), lens), RUBBER, group="zoom")
+    zoom += pieces("lens_glass", standing(revolve([(0.55 * r, 0.96 * out), (0.5 * r, out)], 16), lens), DARK_GLASS, group="zoom")
+    at = (lens[0], face - 0.57 * out, lens[2])
+    y = (face + back) / 2
+    movers = [Mover("zoom", zoom, "revolute", (0, 1, 0), at, 0.5 * math.pi, "hinge_knob", "knob")]
+    movers.append(top_knob("mode", (0.36 * w, y, top), 0.11 * w if reflex else 0.085 * w, PLASTIC, depth=0.009))
     cap = STEEL if finish is DARK else PLASTIC
-    movers.append(top_button("release", (-0.42 * w, -0.32 * w), around(0.006, y), (top_z + 0.002, top_z + 0.005), cap, 0.0015))
-    if form != "reflex":
-        movers.append(top_knob("exposure", (0.12 * w, y, top_z), 0.07 * w, PLASTIC, depth=0.007))
-        base += pieces("shoe", box((-0.10 * w, 0.02 * w), around(0.008, y), (top_z, h)), STEEL)
-        window = box((-0.4 * w, -0.26 * w), (body_y[0] - 0.001, body_y[0] + 0.002), (0.8 * top_z, 0.93 * top_z))
+    movers.append(top_button("release", (-0.42 * w, -0.32 * w), around(0.006, y), (top + 0.002, top + 0.005), cap, 0.0015))
+    if not reflex:
+        movers.append(top_knob("exposure", (0.12 * w, y, top), 0.07 * w, PLASTIC, depth=0.007))
+        window = box((-0.4 * w, -0.26 * w), (face - 0.001, face + 0.002), (0.8 * top, 0.93 * top))
+        base += pieces("shoe", box((-0.10 * w, 0.02 * w), around(0.008, y), (top, h)), STEEL)
         return Shape(base + pieces("finder", window, DARK_GLASS, group="finder"), tuple(movers))
-    prism = (-0.13 * w, 0.23 * w)
-    base += pieces("prism", box(prism, (y, body_y[1]), (top_z, h - 0.012), 0.006), finish)
-    head = box((prism[0], prism[1]), (body_y[0] + 0.004, body_y[1]), (h - 0.0115, h), 0.003)
-    movers.append(lid("flash", pieces("flash", head, finish), (0.05 * w, body_y[1], h - 0.0115), math.radians(60)))
-    return Shape(base, tuple(movers))
+    prism, low = (-0.13 * w, 0.23 * w), h - 0.0115
+    base += pieces("prism", box(prism, (y, back), (top, h - 0.012), 0.006), finish)
+    flash = pieces("flash", box(prism, (face + 0.004, back), (low, h), 0.003), finish)
+    return Shape(base, (*movers, lid("flash", flash, (0.05 * w, back, low), math.radians(60))))
 
 
 def keyboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -157,21 +150,21 @@ def keyboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     top = h - 0.006
     finish = one_of(rng, (DARK, SILVER, PALE))
     cap = one_of(rng, (KEY_PALE, PLASTIC_WHITE)) if finish is not SILVER else KEY
+    feet = [box(around(0.45 * w), around(0.006, s * 0.4 * d), (0, 0.002)) for s in (-1, 1)]
     base = pieces("board", box(around(w / 2), around(d / 2), (0.002, top), 0.003), finish, group="board")
-    base += pieces("feet", [box(around(0.45 * w), around(0.006, s * 0.4 * d), (0, 0.002)) for s in (-1, 1)], RUBBER, group="board")
+    base += pieces("feet", feet, RUBBER, group="board")
     rows = [9, 9, 8, 8] if form == "rows" else [4, 4, 4, 3]
     pitch = 0.94 * d / (len(rows) + (1 if form == "rows" else 0))
+    z = (top + 0.0028, h)
     movers = []
     for r, count in enumerate(rows):
         y = 0.47 * d - (r + 1) * pitch
-        cells = np.linspace(-0.485 * w, 0.485 * w, count + 1)
-        for k in range(count):
-            x = (float(cells[k]) + 0.002, float(cells[k + 1]) - 0.002)
-            movers.append(top_button(f"key_{r}_{k}", x, (y + 0.002, y + pitch - 0.002), (top + 0.0028, h), cap, 0.0025))
+        for k, x in enumerate(split(around(0.485 * w), count, 0.002)):
+            movers.append(top_button(f"key_{r}_{k}", x, (y + 0.002, y + pitch - 0.002), z, cap, 0.0025))
     if form == "rows":
         y = -0.47 * d
-        for name, x in (("left", (-0.485, -0.3)), ("space", (-0.29, 0.25)), ("right", (0.26, 0.485))):
-            movers.append(top_button(f"key_{name}", (x[0] * w, x[1] * w), (y, y + pitch - 0.004), (top + 0.0028, h), cap, 0.0025))
+        for name, a, b in (("left", -0.485, -0.3), ("space", -0.29, 0.25), ("right", 0.26, 0.485)):
+            movers.append(top_button(f"key_{name}", (a * w, b * w), (y, y + pitch - 0.004), z, cap, 0.0025))
     return Shape(base, tuple(movers))
 
 
