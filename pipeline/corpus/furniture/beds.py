@@ -62,7 +62,7 @@ def bedding(rng: np.random.Generator, x: Interval, y: Interval, low: float, top:
     fold = my[1] - head
     thick = 0.045
     drop = min(0.8 * (top - low), 0.16)
-    parts += duvet(mx, (my[0], fold - 0.2), top, thick, drop, cover, foot=False)
+    parts += duvet(mx, (my[0], fold - 0.2), top, thick, drop, cover)
     turned = cushion((mx[0] - 0.02, mx[1] + 0.02), (fold - 0.198, fold + 0.03), (top, top + 1.5 * thick), 0.03, 3)
     parts += pieces("duvet_fold", turned, BEDDING if cover is not BEDDING else scheme.soft if rng.random() < 0.5 else BEDDING)
     count = 2 if wide > 1.25 else 1
@@ -82,7 +82,7 @@ def bedding(rng: np.random.Generator, x: Interval, y: Interval, low: float, top:
     parts += pieces("pillows", pads, BEDDING)
     if rng.random() < 0.55:
         foot = my[0] + 0.14 * long
-        band = duvet((mx[0] - 0.027, mx[1] + 0.027), (foot, foot + 0.45), top + 1.25 * thick, 0.014, drop * 0.95, scheme.soft, foot=False)
+        band = duvet((mx[0] - 0.027, mx[1] + 0.027), (foot, foot + 0.45), top + 1.25 * thick, 0.014, drop * 0.95, scheme.soft)
         parts += tuple(Piece("throw", p.solid, p.finish) for p in band)
     return parts
 

@@ -77,15 +77,10 @@ def throw_pillow(at: tuple[float, float, float], size: float, tilt: float, yaw: 
     return solid.moved((at[0], at[1], at[2] - float(solid.vertices[:, 2].min())))
 
 
-def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: Finish, *, foot: bool = True) -> Pieces:
-    """Return a cover that lies on a mattress at `z` and hangs over its sides (and foot) by `drop`; x, y are the mattress's."""
+def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: Finish) -> Pieces:
+    """Return a cover that lies on a mattress at `z` and hangs over its sides by `drop`; x, y are the mattress's."""
     side = 0.55 * thick
-    solids = [cushion((x[0] - side, x[1] + side), (y[0] - side * foot, y[1]), (z, z + thick), 0.45 * thick, 3, 0.25 * thick)]
-    low = z - drop
-    solids += [
-        cushion((px - side if s < 0 else px, px if s < 0 else px + side), (y[0] - side * foot, y[1] - 0.01), (low, z), 0.45 * side, 1)
-        for s, px in ((-1, x[0]), (1, x[1]))
-    ]
-    if foot:
-        solids.append(cushion((x[0], x[1]), (y[0] - side, y[0]), (low, z), 0.45 * side, 1))
+    solids = [cushion(inset(x, -side), y, (z, z + thick), 0.45 * thick, 3, 0.25 * thick)]
+    hems = ((x[0] - side, x[0]), (x[1], x[1] + side))
+    solids += [cushion(hem, (y[0], y[1] - 0.01), (z - drop, z), 0.45 * side, 1) for hem in hems]
     return pieces("duvet", solids, cloth)
