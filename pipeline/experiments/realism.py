@@ -102,17 +102,16 @@ Pairs = Mapping[str, tuple[Sequence[Arrangement], Sequence[Arrangement]]]
 
 
 def layout_figures(seed: int, pairs: Pairs, harmed: Pairs) -> Json:
-    """Return SCA of the forest for each pair of samples, the same where no body counts as in another, and for each harm."""
+    """Return SCA of the forest for each pair of samples and for each harm."""
 
-    def accuracy_of(pair: tuple[Sequence[Arrangement], Sequence[Arrangement]], *, solid: bool = False) -> Any:
-        real, generated = (features(rooms, solid=solid) for rooms in pair)
+    def accuracy_of(pair: tuple[Sequence[Arrangement], Sequence[Arrangement]]) -> Any:
+        real, generated = (features(rooms) for rooms in pair)
         return forest_accuracy(seed, real, generated, *([room.name for room in rooms] for rooms in pair))
 
     harm = {name: accuracy_of(pair) for name, pair in harmed.items()}
     blind = [name for name, accuracy in harm.items() if accuracy["rate"] < SEEN]
     return {
         "made": {name: accuracy_of(pair) for name, pair in pairs.items()},
-        "solid": {name: accuracy_of(pair, solid=True) for name, pair in pairs.items()},
         "harm": harm,
         "blind_to": blind,
     }

@@ -24,19 +24,15 @@ GAPS = ("back", "side", "wall", "beside", "look")  # what is told for each kind 
 SKEWS = np.radians([1.0, 3.0, 8.0])
 
 
-def steps(gap: Floats, least: int = LOW) -> Floats:
+def steps(gap: Floats) -> Floats:
     """Return gaps [m] in whole steps, cut at both ends."""
-    return np.asarray(np.floor(np.clip(gap, least * STEP, (HIGH + 0.5) * STEP) / STEP))
+    return np.asarray(np.floor(np.clip(gap, LOW * STEP, (HIGH + 0.5) * STEP) / STEP))
 
 
-def features(rooms: Sequence[Arrangement], *, solid: bool = False) -> Floats:
-    """Return the features (R, F) of rooms.
-
-    `solid`: what is in a wall or in another thing counts as touching it. Furnished rooms of datasets have a good deal of that,
-    and homes that are proven free of it must not be told by it alone.
-    """
-    names, least = taxonomy.load().names, 0 if solid else LOW
-    return np.stack([_row(room, names, least) for room in rooms]) if rooms else np.zeros((0, 0))
+def features(rooms: Sequence[Arrangement]) -> Floats:
+    """Return the features (R, F) of rooms."""
+    names = taxonomy.load().names
+    return np.stack([_row(room, names) for room in rooms]) if rooms else np.zeros((0, 0))
 
 
 def summaries(rooms: Sequence[Arrangement]) -> Floats:
@@ -44,7 +40,7 @@ def summaries(rooms: Sequence[Arrangement]) -> Floats:
     return features(rooms)[:, : -len(GAPS) * len(taxonomy.load().names)]
 
 
-def _row(room: Arrangement, names: Sequence[str], low: int) -> Floats:
+def _row(room: Arrangement, names: Sequence[str]) -> Floats:
     kind = np.array([names.index(name) for name in room.categories], int)
     n = len(kind)
     gap, turn = measure(room) if n else (np.zeros((0, 4)), np.zeros((0, 4)))
@@ -53,8 +49,8 @@ def _row(room: Arrangement, names: Sequence[str], low: int) -> Floats:
     skew = np.abs(turn[np.arange(n), gap.argmin(1)]) if n else np.zeros(0)
     back = AROUND.index("back")
     least = {
-        "back": steps(gap[:, back], low), "side": steps(gap[:, [1, 3]].min(1), low) if n else gap[:, 0],
-        "wall": steps(gap.min(1), low) if n else gap[:, 0], "beside": steps(beside, low), "look": look,
+        "back": steps(gap[:, back]), "side": steps(gap[:, [1, 3]].min(1)) if n else gap[:, 0],
+        "wall": steps(gap.min(1)) if n else gap[:, 0], "beside": steps(beside), "look": look,
     }  # fmt: skip
     each = np.full((len(least), len(names)), ABSENT)
     for row, values in zip(each, least.values(), strict=True):

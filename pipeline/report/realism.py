@@ -56,12 +56,10 @@ def _format_share(value: Json) -> str:
 
 
 def _forest(figures: Json) -> TableView:
-    rows = [[_title(name), share(value), share(figures["solid"][name]), str(value["n"])] for name, value in figures["made"].items()]
-    rows += [[f"harm: {name}", share(value), "", str(value["n"])] for name, value in figures["harm"].items()]
-    caption = (
-        "SCA of a random forest on layout features against real rooms: .5 is best. Solid: what is in another body counts as touching it."
-    )
-    return TableView(_with_warning(caption, figures), ("rooms", "accuracy", "solid", "rooms of both"), rows)
+    rows = [[_title(name), share(value), str(value["n"])] for name, value in figures["made"].items()]
+    rows += [[f"harm: {name}", share(value), str(value["n"])] for name, value in figures["harm"].items()]
+    caption = "SCA of a random forest on layout features against real rooms: .5 is best."
+    return TableView(_with_warning(caption, figures), ("rooms", "accuracy", "rooms of both"), rows)
 
 
 def _views(name: str, figures: Json) -> list[TableView]:
