@@ -78,7 +78,7 @@ class SampleSettings:
     batch: int = 32  # rooms per padded batch
     quantity: bool = True  # draw exactly as many objects as are asked for
     articulation: Articulation = "joints"  # what counts as extended state: joints' sweeps, the paper's heuristic, or no guidance
-    articulation_scale: float = 0.5  # step along the descent of phi_articoll [m per m]
+    articulation_scale: float = 0.2  # step along the descent of phi_articoll [m per m]
     articulation_below: float = 30.0
     slack: float = 0.06  # what things may reach into each other at no cost [m]: furnished rooms do, and shapes are less than boxes
     turn_scale: float = 0.1  # step of the yaw, per step of the position
