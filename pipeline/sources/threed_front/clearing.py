@@ -1,7 +1,7 @@
 """Furniture moved out of walls and of each other, as little as need be.
 
-A third of the pieces of real scene files reach into a wall or a neighbour, mostly by centimetres. A layout model learns that with the rest, and what
-its pieces are in is lost to whoever filters them. So a piece is moved before it is judged, as 3DFRONT-NC (CASAGPT, CVPR 2025) optimises rooms
+In four of ten rooms of scene files something reaches into a wall or a neighbour, mostly by centimetres. A layout model learns that with the rest,
+and a filter loses what lies half outside. So a piece is moved before it is judged, as 3DFRONT-NC (CASAGPT, CVPR 2025) optimises rooms
 until nothing collides; here by the least translations that separate two boxes, walls first, the worst conflict next.
 """
 
@@ -18,7 +18,6 @@ from shapely.geometry import Polygon
 
 from pipeline.sources.threed_front.furniture import Placed, shared_shape
 from pipeline.sources.threed_front.notches import fill_columns
-from pipeline.sources.threed_front.poses import Pose
 from pipeline.sources.threed_front.supports import supports
 from pipeline.taxonomy import Taxonomy
 
@@ -36,7 +35,7 @@ LOOSE = 0.03  # [m] of overlap that a snug place is worth
 
 @dataclass(frozen=True, slots=True)
 class Room:
-    """Boxes in plan: half extents (n, 2), unit axes (n, 2, 2) as rows, which may conflict (n, n), the floor and its walls.
+    """Boxes in plan: half extents (n, 2), unit axes (n, 2, 2) as rows, which may conflict (n, n), the floor with SLACK around it, its walls.
 
     `walls` are (m, 2) starts, (m, 2) unit tangents, (m, 2) inward normals, (m,) lengths.
     """
@@ -45,7 +44,6 @@ class Room:
     half: Floats
     axes: Floats
     rivals: NDArray[np.bool_]
-    floor: Polygon
     grown: Polygon
     walls: tuple[Floats, Floats, Floats, Floats]
 
@@ -87,10 +85,9 @@ def clear(pieces: Sequence[Placed], floor: Polygon, taxonomy: Taxonomy, farthest
 
 
 def _moved(piece: Placed, shift: Floats) -> Placed:
-    pose = piece.pose
-    position = np.round(pose.position + np.append(shift, 0.0), 4) + 0.0
+    position = np.round(piece.pose.position + np.append(shift, 0.0), 4) + 0.0
     note = ("moved", f"{piece.category} by {math.hypot(*shift):.2f} m")
-    return replace(piece, pose=Pose(position, pose.yaw, pose.size, pose.mirrored), notes=(*piece.notes, note))
+    return replace(piece, pose=replace(piece.pose, position=position), notes=(*piece.notes, note))
 
 
 def _room(pieces: Sequence[Placed], floor: Polygon, bearers: Sequence[int], taxonomy: Taxonomy) -> Room:
@@ -112,7 +109,7 @@ def _room(pieces: Sequence[Placed], floor: Polygon, bearers: Sequence[int], taxo
     tangents = steps / length[:, None]
     walls = (points[:-1], tangents, np.stack([-tangents[:, 1], tangents[:, 0]], 1), length)
     axes = np.stack([np.stack([c, s], -1), np.stack([-s, c], -1)], 1)
-    return Room(pieces, size / 2 * own[:, None], axes, rivals, floor, floor.buffer(SLACK, join_style="mitre"), walls)
+    return Room(pieces, size / 2 * own[:, None], axes, rivals, floor.buffer(SLACK, join_style="mitre"), walls)
 
 
 def _separate(room: Room, start: Floats, farthest: float) -> Floats:
@@ -128,11 +125,7 @@ def _separate(room: Room, start: Floats, farthest: float) -> Floats:
         if depths.sum() < least:
             best, least = centres.copy(), float(depths.sum())
         conflicts = sorted(((depths[i, j], k, j) for i, k in enumerate(own) for j in own if j > k and depths[i, j] > SLACK), reverse=True)
-        parted = [
-            _part(room, k, j, centres, start, farthest, push=attempt >= CAREFUL)
-            for _, k, j in conflicts
-            if room.overlaps(k, centres[k], centres)[0][j] > SLACK
-        ]
+        parted = [_part(room, k, j, centres, start, farthest, push=attempt >= CAREFUL) for _, k, j in conflicts]
         if not any(parted) and attempt >= CAREFUL:
             break
     return best
@@ -162,7 +155,7 @@ def _into_room(room: Room, k: int, at: Floats) -> Floats | None:
 def _part(room: Room, k: int, j: int, centres: Floats, start: Floats, farthest: float, *, push: bool) -> bool:
     """Move one of two pieces out of the other, where that makes less conflict than there is, or `push`es a third; whether that did."""
     depth, depths, axes = room.overlaps(k, centres[k], centres)
-    if _share_notch(room, k, j, centres):
+    if depth[j] <= SLACK or _share_notch(room, k, j, centres):
         return False
     best: tuple[float, int, Floats] | None = None
     for mover, sign in ((k, 1.0), (j, -1.0)):

@@ -76,12 +76,13 @@ def _home(piece: Placed, room: ReadRoom | None, rooms: list[ReadRoom], limits: F
 
     Where pieces are moved out of walls, one that is half in a wall lies in the room that holds most of it.
     """
-    ordered = sorted(rooms, key=lambda r: (r is not room, -inside(piece, r.polygon)))
-    within = next((r for r in ordered if inside(piece, r.polygon) >= limits.min_inside), None)
+    shares = ((inside(piece, r.polygon), r) for r in rooms)
+    ordered = sorted(shares, key=lambda there: (there[1] is not room, -there[0]))
+    within = next((r for share, r in ordered if share >= limits.min_inside), None)
     if within is not None or not limits.max_shift:
         return within
-    most = max(ordered, key=lambda r: inside(piece, r.polygon), default=None)
-    return most if most is not None and inside(piece, most.polygon) >= HALF else None
+    share, most = max(ordered, key=lambda there: there[0], default=(0.0, None))
+    return most if share >= HALF else None
 
 
 def _move_to_room(piece: Placed, record: RoomRecord, home: ReadRoom) -> Placed:
@@ -103,9 +104,10 @@ def _keep(house: HouseFile, room: ReadRoom, contents: Candidates, taxonomy: Taxo
         raise SourceError("too_large", where, f"{len(candidates)} objects in {where}")
     if limits.max_shift:
         candidates = clear(candidates, room.polygon, taxonomy, limits.max_shift)
-        out = [piece for piece in candidates if inside(piece, room.polygon) < limits.min_inside]
+        outside = [inside(piece, room.polygon) < limits.min_inside for piece in candidates]
+        out = [piece for piece, beyond in zip(candidates, outside, strict=True) if beyond]
         rejects += [reject("object", _name(house, room, piece), "outside_room", _outside(piece, room, room.record)) for piece in out]
-        candidates = [piece for piece in candidates if all(piece is not other for other in out)]
+        candidates = [piece for piece, beyond in zip(candidates, outside, strict=True) if not beyond]
     dropped = overlapping(candidates, limits, taxonomy)
     for i, piece in enumerate(candidates):
         name = _name(house, room, piece)
