@@ -69,15 +69,24 @@ def read(path: Path, table: Table, scenes: Collection[str] | None = None) -> lis
     return rows
 
 
+def parquet(path: Path, columns: list[str] | None = None) -> pa.Table:
+    """Read a Parquet file, or some of its columns. Raises OSError and ArrowException.
+
+    In this thread alone: Arrow's own threads now and then abort a process that ends while they do (apache/arrow 34314, 50482).
+    """
+    return pq.ParquetFile(path, pre_buffer=False).read(columns, use_threads=False)
+
+
 def read_arrow(path: Path, table: Table, scenes: Collection[str] | None = None) -> pa.Table:
     """Read a table as Arrow, columns in the schema's order. Raises ContentError as `read` does."""
     if not path.is_file():
         raise ContentError(f"{path} is missing", "run `make run`, or `dvc repro`, which makes it")
     try:
         if scenes is None:
-            data = pq.ParquetFile(path).read()
+            data = parquet(path)
         else:
-            data = pq.read_table(path, filters=pc.field("scene_id").isin(pa.array(sorted(scenes), pa.string())), partitioning=None)
+            wanted = pc.field("scene_id").isin(pa.array(sorted(scenes), pa.string()))
+            data = pq.read_table(path, filters=wanted, partitioning=None, use_threads=False, pre_buffer=False)
     except (OSError, pa.ArrowException) as error:
         msg = f"{path} is not a readable Parquet file ({str(error).splitlines()[0]})"
         raise ContentError(msg, "delete it and run `dvc repro` again") from error

@@ -11,7 +11,6 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from sfgen.dataset import FORMAT, SCHEMA_VERSION, TABLES, read_header
 from sfgen.place import DatasetError, Place
@@ -202,8 +201,7 @@ def _check_shard(
 
 def _read_table(place: Place, path: str, schema: pa.Schema | None) -> pa.Table:
     try:
-        with place.open(path) as file:
-            data = pq.ParquetFile(file).read()
+        data = place.table(path)
     except (OSError, pa.ArrowException) as error:
         raise _wrong(f"{place.path(path)} is not a readable Parquet file ({str(error).splitlines()[0]})") from error
     metadata = data.schema.metadata or {}

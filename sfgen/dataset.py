@@ -11,7 +11,6 @@ from typing import Any, overload
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from sfgen.homes import Home, Joint, Opening, PlacedObject, Room, records, require_columns
@@ -178,8 +177,7 @@ class Dataset(Sequence[Home]):
     def _read(self, table: str, number: int, columns: list[str] | None = None) -> pa.Table:
         path = f"{table}/shard-{number:05d}.parquet"
         try:
-            with self.place.open(path) as file:
-                return pq.ParquetFile(file).read(columns)
+            return self.place.table(path, columns)
         except (OSError, pa.ArrowException) as error:
             msg = f"cannot read {self.place.path(path)} ({str(error).splitlines()[0]}); {AGAIN}"
             raise DatasetError(msg) from error

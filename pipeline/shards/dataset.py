@@ -42,6 +42,7 @@ from pipeline.shards.layout import (
 from pipeline.shards.library import AssetSource, adopt, settle
 from pipeline.shards.parts import FILES, Part, join, part_place, parts_there, write_part
 from pipeline.shards.seal import SEAL, is_sealed, seal, vouches
+from pipeline.tables import parquet
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +126,7 @@ def is_committed(dataset: Dataset, number: int) -> bool:
 def assets_of_all(dataset: Dataset) -> set[str]:
     """Return the assets that the homes of a dataset use."""
     paths = [dataset.folder / table_path("objects", n) for n in range(dataset.header.shards)]
-    return {a for path in paths for a in pq.ParquetFile(path).read(["asset_id"])["asset_id"].to_pylist()}
+    return {a for path in paths for a in parquet(path, ["asset_id"])["asset_id"].to_pylist()}
 
 
 def forget_altered(dataset: Dataset, retry: frozenset[str] = frozenset()) -> list[str]:
@@ -157,7 +158,7 @@ def _fails(folder: Path, name: str, reasons: frozenset[str]) -> bool:
     commit = read_commit(folder, name)
     assert commit is not None
     path = next((path for path in commit.files if path.startswith("rejects/")), None)
-    rows = pq.ParquetFile(folder / path).read(["what", "reason"]).to_pylist() if path and reasons else []
+    rows = parquet(folder / path, ["what", "reason"]).to_pylist() if path and reasons else []
     return any(row["what"] == "index" and row["reason"] in reasons for row in rows)
 
 

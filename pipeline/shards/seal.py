@@ -9,7 +9,6 @@ from typing import Any
 
 import pyarrow as pa
 import pyarrow.compute as pc
-import pyarrow.parquet as pq
 
 from pipeline.errors import ContentError
 from pipeline.manifest import digest, sha256, text_of
@@ -17,6 +16,7 @@ from pipeline.shards.commits import Commit, Entry, entry_of, read_commit
 from pipeline.shards.disk import put
 from pipeline.shards.header import Header, read_header
 from pipeline.shards.layout import ASSETS, EMPTY, HEADER, commit_path, index_of, shard_name
+from pipeline.tables import parquet
 
 SEAL = "dataset"
 
@@ -62,7 +62,7 @@ def _scenes(folder: Path, table: str) -> Iterator[str]:
     """Yield the scene ids of homes that were made, or stay empty, of all shards that can be read."""
     for path in sorted((folder / table).glob("shard-*.parquet")):
         with suppress(OSError, pa.ArrowException):
-            rows = pq.ParquetFile(path).read()
+            rows = parquet(path)
             yield from (
                 rows["scene_id"].to_pylist() if table == "scenes" else rows.filter(pc.equal(rows["what"], EMPTY))["where"].to_pylist()
             )

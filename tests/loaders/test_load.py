@@ -114,6 +114,17 @@ def test_loaders_import_none_of_the_factory(dataset_folder):
     subprocess.run([sys.executable, "-c", program], check=True)
 
 
+def test_reading_starts_no_threads_that_could_outlive_the_interpreter(dataset_folder):
+    program = (
+        "import sys, os, sfgen.dataset\n"
+        "threads = lambda: len(os.listdir('/proc/self/task'))\n"
+        "before = threads()\n"
+        f"homes = list(sfgen.load({str(dataset_folder)!r}))\n"
+        "assert len(homes) == 10 and threads() == before, threads()"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
+
+
 def test_empty_indices_are_told(tmp_path):
     import made
 
