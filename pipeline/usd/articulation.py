@@ -12,6 +12,7 @@ from pxr import Sdf
 
 from pipeline import taxonomy
 from pipeline.entities.asset import Asset, Link, Mesh
+from pipeline.usd.corners import with_distinct_corners
 from pipeline.usd.joints import convert_fixed, convert_joint
 from pipeline.usd.layer import apply, identifiers, label, prim, relationship
 from pipeline.usd.material import bind
@@ -91,10 +92,9 @@ def _convert_pieces(spec: Sdf.PrimSpec, link: Link, asset: Asset, materials: Seq
     colliders = () if is_visual_only(asset) else link.colliders
     weights = [volume(c) for c in colliders]
     shares = {_key(c): link.mass * w / sum(weights) if weigh else None for c, w in zip(colliders, weights, strict=True)}
-    boxes = {_key(c) for c in colliders if _is_box(c)}
-    visible: set[tuple[bytes, bytes]] = set()
-    visual_names = identifiers(m.name for m in link.visuals)
-    for name, mesh in zip(visual_names, link.visuals, strict=True):
+    hidden = hidden_colliders(link) if colliders else {}
+    seen = shares.keys() - {_key(mesh) for mesh in hidden.values()}
+    for name, mesh in zip(_visual_names(link), link.visuals, strict=True):
         material = asset.materials[mesh.material] if asset.materials else None
         gprim = convert_mesh(spec, name, mesh, material.base_color if material else (0.8, 0.8, 0.8))
         if materials:
@@ -103,19 +103,30 @@ def _convert_pieces(spec: Sdf.PrimSpec, link: Link, asset: Asset, materials: Seq
             label(gprim, "class", [HANDLES.get(mesh.part, MOVERS.get(mesh.part, "part"))])
             label(gprim, "part", [mesh.part])
         key = _key(mesh)
-        if key in shares and key not in visible | boxes:
-            visible.add(key)
+        if key in seen:
+            seen.remove(key)
             convert_collider(gprim, shares[key])
-    hidden = {_key(c): c for c in colliders if _key(c) not in visible}
-    for name, (key, mesh) in zip(identifiers((f"{c.name}_collider" for c in hidden.values()), visual_names), hidden.items(), strict=True):
-        if key in boxes:
+    for name, mesh in hidden.items():
+        if _is_box(mesh):
             gprim = convert_box(spec, name, mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
         else:
-            gprim = convert_mesh(spec, name, Mesh(mesh.name, mesh.vertices, mesh.faces), None)
+            shape = with_distinct_corners(mesh) if loose(asset) else mesh
+            gprim = convert_mesh(spec, name, Mesh(shape.name, shape.vertices, shape.faces), None)
         hide(gprim)
-        convert_collider(gprim, shares[key])
+        convert_collider(gprim, shares[_key(mesh)])
         if materials:
             bind(gprim, materials[min(mesh.material, len(materials) - 1)])
+
+
+def hidden_colliders(link: Link) -> dict[str, Mesh]:
+    """Return by prim name the colliders of a link that are prims of their own: boxes, and what is not the very mesh that one sees."""
+    seen = {_key(mesh) for mesh in link.visuals}
+    hidden = {_key(c): c for c in link.colliders if _key(c) not in seen or _is_box(c)}
+    return dict(zip(identifiers((f"{c.name}_collider" for c in hidden.values()), _visual_names(link)), hidden.values(), strict=True))
+
+
+def _visual_names(link: Link) -> list[str]:
+    return identifiers(m.name for m in link.visuals)
 
 
 def _key(mesh: Mesh) -> tuple[bytes, bytes]:

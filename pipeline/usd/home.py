@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from pxr import Sdf
@@ -11,12 +12,14 @@ from pxr import Sdf
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home, Placement
 from pipeline.errors import ContentError
-from pipeline.geometry.walls import levels, shell
+from pipeline.geometry.masonry import masonry
+from pipeline.geometry.walls import Prism, levels, shell
 from pipeline.usd.layer import read_layer, save
 from pipeline.usd.lights import lamp, sky
 from pipeline.usd.material import Palette
 from pipeline.usd.physics import convert_scene
 from pipeline.usd.prim_templates import cast, group, mould, quote, transform_ops
+from pipeline.usd.shared_boards import OVER, boards_felt_elsewhere
 from pipeline.usd.shell import MATERIALS, door_texts, room_text, walls_text, window_texts
 
 
@@ -35,16 +38,20 @@ def home_layer(home: Home, assets: Mapping[str, Asset], library: str = "../../as
     groups: dict[str, list[str]] = {name: [] for name in ("Rooms", "Walls", "Doors", "Windows", "Objects", "Lights")}
     groups["Lights"].append(cast(sky(), "/World/Lights/Sky"))
     shells = {level: shell(plan, level) for level in levels(plan)}
+    building: list[Prism] = []
     for level, built in shells.items():
         elevation = level * plan.storey_height
-        groups["Walls"].append(walls_text("/World/Walls", plan, level, built, materials))
+        solids = [solid for solid in masonry(plan, level, built) if solid.kind != "lintel" or solid.bottom < OVER]
+        building += [replace(solid, bottom=solid.bottom + elevation, top=solid.top + elevation) for solid in solids]
+        groups["Walls"].append(walls_text("/World/Walls", plan, level, built, solids, materials))
         groups["Doors"] += door_texts("/World/Doors", elevation, built, materials)
         groups["Windows"] += window_texts("/World/Windows", elevation, built, materials)
         for room in plan.rooms:
             if room.level == level:
                 groups["Rooms"].append(room_text("/World/Rooms", plan, room, shells, materials))
                 groups["Lights"].append(lamp(f"/World/Lights/{room.room_id}", room, plan.levels_of(room)[-1] * plan.storey_height))
-    groups["Objects"] += [placement_text("/World/Objects", p, assets, library) for p in home.placements]
+    spared = boards_felt_elsewhere(plan, [p for p in home.placements if p.asset_id in assets], assets, building)
+    groups["Objects"] += [placement_text("/World/Objects", p, assets, library, spared.get(p.object_id, ())) for p in home.placements]
     parts = [cast(group("group"), f"/World/{name}", "".join(texts)) for name, texts in groups.items()]
     world = cast(group("assembly"), "/World", "".join([materials.text(), *parts]))
     return read_layer(world + cast(_scene(), "/PhysicsScene"), "World", suffix, _about(home))
@@ -55,8 +62,11 @@ def _scene() -> str:
     return mould(lambda layer: convert_scene(layer, "Mould"))
 
 
-def placement_text(parent: str, placement: Placement, assets: Mapping[str, Asset], library: str) -> str:
-    """Return one placed object: a reference, where it stands, on what, its room; articulated ones at their own size only."""
+def placement_text(parent: str, placement: Placement, assets: Mapping[str, Asset], library: str, spared: Sequence[str] = ()) -> str:
+    """Return one placed object: a reference, where it stands, on what, its room; articulated ones at their own size only.
+
+    Of its colliders those at the paths `spared` below it are left out.
+    """
     asset = assets.get(placement.asset_id)
     if asset is None:
         raise ContentError(
@@ -72,8 +82,16 @@ def placement_text(parent: str, placement: Placement, assets: Mapping[str, Asset
         f'def Xform "{placement.object_id}" (\n'
         f"customData = {{\n{about}}}\n"
         f"prepend references = @{library}/{asset.asset_id}/{asset.asset_id}.usda@\n)\n"
-        f"{{\n{transform_ops(placement.position.tolist(), placement.yaw, placement.scale.tolist())}{support}}}\n"
+        f"{{\n{transform_ops(placement.position.tolist(), placement.yaw, placement.scale.tolist())}{support}{_without(spared)}}}\n"
     )
+
+
+def _without(paths: Sequence[str]) -> str:
+    """Return what switches prims `<link>/<collider>` off."""
+    by_link: dict[str, list[str]] = {}
+    for link, name in (path.split("/") for path in paths):
+        by_link.setdefault(link, []).append(f'over "{name}" (\nactive = false\n)\n{{\n}}\n')
+    return "".join(f'over "{link}"\n{{\n{"".join(overs)}}}\n' for link, overs in by_link.items())
 
 
 def _about(home: Home) -> dict[str, object]:

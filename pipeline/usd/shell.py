@@ -12,7 +12,6 @@ from pxr import Sdf
 
 from pipeline.entities.asset import Asset, Material, Mesh
 from pipeline.entities.plan import Plan, Room
-from pipeline.geometry.masonry import masonry
 from pipeline.geometry.walls import SLAB, Panel, Prism, Shell, floor_pieces, outer_panels, reveals, room_panels
 from pipeline.rendering import fittings, palette
 from pipeline.usd.articulation import convert_asset
@@ -50,12 +49,12 @@ def room_text(parent: str, plan: Plan, room: Room, shells: Mapping[int, Shell], 
     return cast(_room(room.type), path, "".join(parts))
 
 
-def walls_text(parent: str, plan: Plan, level: int, shell: Shell, materials: Palette) -> str:
-    """Return a storey's solids (colliders, one box or convex piece each), facade, jambs, thresholds and steps."""
+def walls_text(parent: str, plan: Plan, level: int, shell: Shell, solids: Iterable[Prism], materials: Palette) -> str:
+    """Return a storey's `solids` (colliders, one box or convex piece each), facade, jambs, thresholds and steps."""
     path = f"{parent}/level_{level}"
     plaster = materials.path(palette.PLASTER)
-    solids = [_solid(f"{path}/solids/{solid.kind}_{i:03d}", solid, plaster) for i, solid in enumerate(masonry(plan, level, shell))]
-    parts = [transform_ops((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(solids))]
+    made = [_solid(f"{path}/solids/{solid.kind}_{i:03d}", solid, plaster) for i, solid in enumerate(solids)]
+    parts = [transform_ops((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(made))]
     parts.append(_panels(f"{path}/facade", outer_panels(shell), palette.FACADE, materials))
     faces = [panel for cut in shell.cuts for panel in reveals(cut)]
     if faces:
