@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -29,11 +29,14 @@ from schemas.rooms import ROOMS
 
 Json = dict[str, Any]
 Rooms = list[Arrangement]
+Pair = tuple[Sequence[Arrangement], Sequence[Arrangement]]  # real rooms, and generated ones beside them
+Pairs = Mapping[str, Pair]
 
 WEIGHTS = Path(__file__).resolve().parents[2] / "weights" / "features.safetensors"
 SEEN = 0.8  # accuracy from which on a classifier has seen a harm
 FARTHER = 2.0  # times that of train against test: from which on FID has seen it
-DRAWS = 5  # draws of training rooms over which their FID against the held-out split is meant: with 195 rooms one is .2 off
+DRAWS = 5  # draws of pairs over which FID is meant: with 195 rooms one is .2 off
+AREA = 0.08  # by so much two rooms of a pair may differ in area
 SHIPPED = "shipped"  # rooms of data/shards: on floors of their own
 WHOLE: Mapping[str, Harm] = {**HARMS, "all": spoilt}
 
@@ -58,22 +61,31 @@ def beside(root: Path, split: str, drafted: Mapping[str, Mapping[str, Sequence[R
     for name, draft in drafted.items():
         rooms = [room for room in map(furniture, from_rows(draft["rooms"], draft["objects"])) if room.name in floors]
         generated[name] = [replace(room, openings=floors[room.name].openings) for room in rooms]
-    shipped = from_rows(*(shipped_rows(root / "data" / "shards", table) for table in (ROOMS, OBJECTS, OPENINGS)))
-    generated[SHIPPED] = [room for room in map(furniture, shipped) if room.layout_type and room.categories]
-    train = [room for room in map(furniture, rooms_of(folder, "train")) if room.layout_type and room.categories]
-    return Beside(list(floors.values()), train, generated)
+    generated[SHIPPED] = shipped_rooms(root / "data" / "shards")
+    return Beside(list(floors.values()), furnished(rooms_of(folder, "train")), generated)
+
+
+def shipped_rooms(dataset: Path) -> Rooms:
+    """Return the furnished rooms of a dataset but for WCs: they are furnished as bathrooms, and the training houses have none."""
+    rooms, *others = (shipped_rows(dataset, table) for table in (ROOMS, OBJECTS, OPENINGS))
+    return furnished(from_rows([row for row in rooms if row["type"] != "wc"], *others))
+
+
+def furnished(rooms: Iterable[Arrangement]) -> Rooms:
+    """Return rooms of a layout type with their furniture alone, those that have any."""
+    return [room for room in map(furniture, rooms) if room.layout_type and room.categories]
 
 
 def realism_table(seed: int, rooms: Beside, known: Relations, nets: Mapping[str, Embed]) -> Json:
     """Return every figure: real beside made, its floor (train against the held-out split), and whether it sees harm."""
     rng = seeds.generator(seed, "realism")
-    draws = [alike(rng, rooms.real, rooms.train) for _ in range(DRAWS)]
-    pairs = {"train": draws[0]}
-    for name, generated in rooms.samples.items():
-        floors = {room.name for room in generated}
-        same = [room for room in rooms.real if room.name in floors]
-        pairs[name] = (same, generated) if same else alike(rng, rooms.real, generated)
-    pairs = {name: pair for name, pair in pairs.items() if len(pair[0]) > 1}
+    draws = {
+        name: drawn
+        for name, generated in {"train": rooms.train, **rooms.samples}.items()
+        if (drawn := pairs_of(rng, rooms.real, generated))
+    }
+    floors = {name: pairs_of(rng, drawn[0][0], rooms.train) for name, drawn in draws.items()}
+    pairs = {name: drawn[0] for name, drawn in draws.items()}
     spoils = {name: [harm(rng, room) for room in rooms.real] for name, harm in WHOLE.items()}
     harmed = {name: (rooms.real, worse) for name, worse in spoils.items()}
     own, train = pairs.get("train", (rooms.real, rooms.real))
@@ -82,29 +94,39 @@ def realism_table(seed: int, rooms: Beside, known: Relations, nets: Mapping[str,
     return {
         "relations": compare(rng, {"real": rooms.real, "train": rooms.train, **rooms.samples}, known),
         "layout": layout_figures(seed, pairs, harmed),
-        "views": {name: view_figures(rng, seed, features_once(embed), pairs, apart, draws) for name, embed in nets.items()},
+        "views": {name: view_figures(rng, seed, features_once(embed), draws, floors, apart) for name, embed in nets.items()},
         "novelty": {name: novelty(generated, real, rooms.train) for name, (real, generated) in pairs.items() if name != "train"},
     }
 
 
+def pairs_of(rng: np.random.Generator, rooms: Rooms, generated: Rooms) -> list[tuple[Rooms, Rooms]]:
+    """Return the rooms and what is generated on the same floors; where these are others, DRAWS draws of rooms alike; none of fewer than two."""
+    names = {room.name for room in generated}
+    same = [room for room in rooms if room.name in names]
+    drawn = [(same, generated)] if same else [alike(rng, rooms, generated) for _ in range(DRAWS)]
+    return [pair for pair in drawn if len(pair[0]) > 1]
+
+
 def alike(rng: np.random.Generator, rooms: Sequence[Arrangement], others: Sequence[Arrangement]) -> tuple[Rooms, Rooms]:
-    """Draw as many rooms of each type from both: what is compared then is furniture, not which rooms homes have."""
+    """Draw pairs of a room and another of its type whose area is within AREA of its own, each room once.
+
+    What is compared then is furniture, not which rooms homes have and how large.
+    """
     drawn: tuple[Rooms, Rooms] = ([], [])
-    for kind in sorted({room.layout_type for room in rooms}):
-        own = [[room for room in group if room.layout_type == kind] for group in (rooms, others)]
-        count = min(map(len, own))
-        for group, into in zip(own, drawn, strict=True):
-            into += [group[k] for k in rng.permutation(len(group))[:count]]
+    free = {kind: [room for room in others if room.layout_type == kind] for kind in sorted({room.layout_type for room in rooms})}
+    for k in rng.permutation(len(rooms)):
+        candidates = free[rooms[k].layout_type]
+        near = [i for i, other in enumerate(candidates) if abs(np.log(other.area / rooms[k].area)) <= np.log1p(AREA)]
+        if near:
+            drawn[0].append(rooms[k])
+            drawn[1].append(candidates.pop(int(rng.choice(near))))
     return drawn
-
-
-Pairs = Mapping[str, tuple[Sequence[Arrangement], Sequence[Arrangement]]]
 
 
 def layout_figures(seed: int, pairs: Pairs, harmed: Pairs) -> Json:
     """Return SCA of the forest for each pair of samples and for each harm."""
 
-    def accuracy_of(pair: tuple[Sequence[Arrangement], Sequence[Arrangement]]) -> Any:
+    def accuracy_of(pair: Pair) -> Any:
         real, generated = (features(rooms) for rooms in pair)
         return forest_accuracy(seed, real, generated, *([room.name for room in rooms] for rooms in pair))
 
@@ -118,20 +140,28 @@ def layout_figures(seed: int, pairs: Pairs, harmed: Pairs) -> Json:
 
 
 def view_figures(
-    rng: np.random.Generator, seed: int, features_of: Features, pairs: Pairs, harmed: Pairs, draws: Sequence[tuple[Rooms, Rooms]] = ()
+    rng: np.random.Generator,
+    seed: int,
+    features_of: Features,
+    draws: Mapping[str, Sequence[Pair]],
+    floors: Mapping[str, Sequence[Pair]],
+    harmed: Pairs,
 ) -> Json:
-    """Return FID, KID and SCA of plan views for each pair of samples, and for each harm; FID of training rooms is the mean over `draws` of them.
+    """Return FID, KID and SCA of plan views for each sample, and for each harm.
 
+    FID of a sample is the mean over its `draws`; beside it stands its floor, that of training rooms against the same real rooms (over `floors`).
     A harm is seen where spoilt rooms of the split are farther from training rooms than the same rooms unspoilt, twice as far or more.
     """
 
     def scores_of(samples: Pairs) -> Json:
         return {name: compare_views(rng, seed, features_of, real, {name: generated})[name] for name, (real, generated) in samples.items()}
 
-    scores, harm = scores_of(pairs), scores_of(harmed)
-    if "train" in scores:
-        every = [frechet(*map(features_of, pair)) for pair in draws]
-        scores["train"]["fid"] = round(float(np.mean(every)), 4)
+    def fid(every: Sequence[Pair]) -> float | None:
+        return round(float(np.mean([frechet(features_of(real), features_of(rooms)) for real, rooms in every])), 4) if every else None
+
+    scores, harm = scores_of({name: drawn[0] for name, drawn in draws.items()}), scores_of(harmed)
+    for name, drawn in draws.items():
+        scores[name] |= {"fid": fid(drawn), "floor": fid(floors.get(name, []))}
     blind = [name for name, figures in harm.items() if "train" not in scores or figures["fid"] < FARTHER * scores["train"]["fid"]]
     return {"made": scores, "harm": harm, "blind_to": blind}
 

@@ -67,6 +67,7 @@ def _views(name: str, figures: Json) -> list[TableView]:
         [
             _title(key) if k == 0 else f"harm: {key}",
             f"{v['fid']:.2f}",
+            "-" if v.get("floor") is None else f"{v['floor']:.2f}",
             f"{v['kid']['mean']:.4f} ({v['kid']['low']:.4f} to {v['kid']['high']:.4f})",
             share(v["sca"]),
         ]
@@ -74,7 +75,7 @@ def _views(name: str, figures: Json) -> list[TableView]:
         for key, v in part.items()
     ]
     caption = f"Plan views against those of real rooms, features of {name}."
-    return [TableView(_with_warning(caption, figures), ("rooms", "FID", "KID", "SCA"), rows)]
+    return [TableView(_with_warning(caption, figures), ("rooms", "FID", "of training rooms", "KID", "SCA"), rows)]
 
 
 def _with_warning(caption: str, figures: Json) -> str:

@@ -69,6 +69,26 @@ def test_the_prior_draws_sound_programs(seed):
     assert words[0] == "A"
 
 
+def test_rooms_of_the_prior_are_as_large_as_the_training_houses():
+    areas: dict[str, list[float]] = {}
+    for seed in range(200):
+        made = prior(np.random.default_rng(seed))
+        dines_apart = any(r.type == "dining_room" for r in made.rooms)
+        for r in made.rooms:
+            kind = f"living_room, dining {'apart' if dines_apart else 'there'}" if r.type == "living_room" and not r.functions else r.type
+            areas.setdefault(kind, []).append(r.area.target)
+    means = {
+        "living_room, dining there": 33.8,
+        "living_room, dining apart": 17.7,
+        "dining_room": 17.4,
+        "bedroom": 14.3,
+        "kitchen": 6.7,
+        "bathroom": 4.8,
+    }
+    for kind, mean in means.items():  # of the rooms of data/tables
+        assert 0.9 * mean < np.mean(areas[kind]) < 1.15 * mean, kind
+
+
 def test_the_prior_is_varied():
     made = [prior(np.random.default_rng(s)) for s in range(300)]
     assert len(Counter(tuple(sorted(r.type for r in p.rooms)) for p in made)) > 110

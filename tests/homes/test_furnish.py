@@ -94,7 +94,13 @@ def test_a_studio_is_asked_for_a_wardrobe_oftener_than_a_bedroom_and_never_for_a
     own, others = words.types["studio_room"].usual[0].share, words.layouts["bedroom"].usual[0].share
     assert abs(np.mean([bool(a) for a in asked]) - (1 - (1 - own) * (1 - others))) < 0.06
     elsewhere = {c for _ in range(50) for bounds in usual_bounds(studio, "living_room", words, rng) for c in bounds.categories}
-    assert elsewhere == {"tv_stand", "coffee_table"}
+    assert elsewhere == {"coffee_table"}
+
+
+def test_a_wc_is_asked_for_a_lamp():
+    words = taxonomy.load()
+    wc = replace(job("wc"), layout_type="bathroom")
+    assert usual_bounds(wc, "bathroom", words, np.random.default_rng(0)) == (CategoryBounds(("ceiling_lamp",), 1),)
 
 
 def test_a_studio_is_asked_for_a_table_where_the_floor_is_enough():

@@ -11,8 +11,13 @@ from pipeline.floorplan.program.program_sketch import Sketch
 
 
 def _lounge(beds: int) -> float:
-    """Mean area of a living room beside a dining room: such rooms of the training houses have 19 m2, those in which one dines as well 31."""
-    return 18.0 + 1.5 * beds
+    """Mean area of a living room beside a dining room: such rooms of the training houses have 18 m2."""
+    return 14.0 + 1.2 * beds
+
+
+def _great_room(beds: int) -> float:
+    """Mean area of a living room in which one dines as well: such rooms of the training houses have 34 m2, most in homes of three bedrooms."""
+    return 25.0 + 3.0 * beds
 
 
 def studio(s: Sketch, _beds: int) -> FloorProgram:
@@ -29,7 +34,7 @@ def studio(s: Sketch, _beds: int) -> FloorProgram:
         s.room("kitchen", "kitchen", 5.5)
         s.link("studio", "kitchen", "open", "open", "door")
     if s.odds(0.25):
-        s.off("studio", "balcony", "balcony", 3.8)
+        s.off("studio", "balcony", "balcony", 3.5)
     return s.program(corner=0.0)
 
 
@@ -37,11 +42,11 @@ def flat(s: Sketch, beds: int) -> FloorProgram:
     """Draw a contemporary flat: bedrooms off a hallway, an entry or the living room; the kitchen open, apart or behind the dining room."""
     draw = s.rng.random()
     apart = beds >= 2 and draw < 0.2
-    s.room("living", "living_room", _lounge(beds) if apart else 20.0 + 3.0 * beds)
+    s.room("living", "living_room", _lounge(beds) if apart else _great_room(beds))
     hub = _hub(s, beds)
-    s.room("kitchen", "kitchen", 6.5 + 0.4 * beds)
+    s.room("kitchen", "kitchen", 5.6 + 0.4 * beds)
     if apart:
-        s.room("dining", "dining_room", 14.0)
+        s.room("dining", "dining_room", 16.5)
         s.link("living", "dining", "door", "open", "portal")
         s.link("dining", "kitchen", "door", "open")
     elif draw < 0.65:
@@ -81,7 +86,7 @@ def _hub(s: Sketch, beds: int) -> str:
 
 def _extras(s: Sketch, beds: int, hub: str) -> None:
     if s.odds(0.35):
-        s.off("living", "balcony", "balcony", 5.0)
+        s.off("living", "balcony", "balcony", 3.5)
     if s.odds(0.12 + 0.04 * beds):
         s.off(hub, "office", "office", 9.5)
     if beds >= 2 and s.odds(0.2):
@@ -97,11 +102,11 @@ def _extras(s: Sketch, beds: int, hub: str) -> None:
 def corridor(s: Sketch, beds: int) -> FloorProgram:
     """Draw a flat of the European block: one corridor from the front door, every room closed off it, a WC apart from the bath."""
     s.room("hall", "hallway")
-    s.off("hall", "living", "living_room", 20.0 + 2.0 * beds)
+    s.off("hall", "living", "living_room", _great_room(beds))
     if s.odds(0.6):
-        s.off("hall", "kitchen", "kitchen", 6.5 + 0.4 * beds)
+        s.off("hall", "kitchen", "kitchen", 5.6 + 0.4 * beds)
     else:
-        s.off("living", "kitchen", "kitchen", 6.5 + 0.4 * beds)
+        s.off("living", "kitchen", "kitchen", 5.6 + 0.4 * beds)
     if s.odds(0.25):
         s.link("living", "kitchen") if s.links[-1].a == "hall" else s.link("hall", "kitchen")
     s.bedrooms("hall", beds, 15.0, 12.3)
@@ -111,18 +116,18 @@ def corridor(s: Sketch, beds: int) -> FloorProgram:
     if s.odds(0.4):
         s.off("hall", "storage", "storage", 2.6, 0.12)
     if s.odds(0.55):
-        s.off("living", "balcony", "balcony", 4.5)
+        s.off("living", "balcony", "balcony", 3.7)
     return s.program(into="hall", aspects=(1.0, 1.2, 1.4))
 
 
 def open_plan(s: Sketch, beds: int) -> FloorProgram:
     """Draw a North American home: living, dining and kitchen in one; a primary suite with walk-in closet; the garage behind the laundry."""
     apart = s.odds(0.55)
-    s.room("living", "living_room", _lounge(beds) if apart else 24.0 + 2.0 * beds)
-    s.room("kitchen", "kitchen", 7.5 + 0.4 * beds)
+    s.room("living", "living_room", _lounge(beds) if apart else _great_room(beds))
+    s.room("kitchen", "kitchen", 6.6 + 0.4 * beds)
     s.link("living", "kitchen", "open")
     if apart:
-        s.room("dining", "dining_room", 14.0)
+        s.room("dining", "dining_room", 16.5)
         s.link("living" if s.odds(0.5) else "kitchen", "dining", "open")
     s.room("hall", "hallway")
     s.link("living", "hall", "portal", "door")
@@ -157,7 +162,7 @@ def ldk(s: Sketch, beds: int) -> FloorProgram:
         beside = beds > 1 and k == beds - 1 and s.odds(0.5)  # a room of mats that opens to the living room
         s.off("ldk" if beside else "hall", f"bed_{k + 1}", "bedroom", 12.0 if k == 0 else 10.5, 0.1)
     if s.odds(0.8):
-        s.off("ldk", "balcony", "balcony", 4.5)
+        s.off("ldk", "balcony", "balcony", 3.7)
     if s.odds(0.35):
         s.off("bed_1", "closet", "closet", 2.8)
     return s.program(into="genkan", aspects=(1.0, 1.3, 1.6), corner=0.05)
@@ -166,18 +171,18 @@ def ldk(s: Sketch, beds: int) -> FloorProgram:
 def two_halls(s: Sketch, beds: int) -> FloorProgram:
     """Draw a Chinese flat of n bedrooms and two halls: living and dining in one run, kitchen off the dining hall, balcony south of the living."""
     s.room("living", "living_room", _lounge(beds))
-    s.room("dining", "dining_room", 12.5)
+    s.room("dining", "dining_room", 16.0)
     s.link("living", "dining", "open")
-    s.off("dining", "kitchen", "kitchen", 7.0)
+    s.off("dining", "kitchen", "kitchen", 6.6)
     s.room("hall", "hallway")
     s.link("living", "hall", "portal", "door")
     s.bedrooms("hall", beds, 15.0, 11.5)
     s.off("hall", "bath", "bathroom", 4.5, 0.12)
     if beds >= 3 and s.odds(0.7):
         s.off("bed_1", "ensuite", "bathroom", 4.2, 0.12)
-    s.off("living", "balcony", "balcony", 5.0)
+    s.off("living", "balcony", "balcony", 3.5)
     if s.odds(0.3):
-        s.off("kitchen", "balcony_2", "balcony", 3.3, 0.1)
+        s.off("kitchen", "balcony_2", "balcony", 2.8, 0.1)
     if s.odds(0.3):
         s.off("dining", "genkan", "entry", 3.6, 0.12)
     return s.program(into="genkan" if s.has("genkan") else "living")
@@ -186,20 +191,20 @@ def two_halls(s: Sketch, beds: int) -> FloorProgram:
 def hall_less(s: Sketch, beds: int) -> FloorProgram:
     """Draw a tropical house without corridors: everything opens off one large living room; a veranda; the kitchen behind."""
     apart = s.odds(0.4)
-    s.room("living", "living_room", (21.0 if apart else 24.0) + 3.0 * beds)
+    s.room("living", "living_room", (_lounge(beds) + 3.0) if apart else _great_room(beds))
     s.bedrooms("living", beds, 14.5, 12.3)
     if apart:
-        s.room("dining", "dining_room", 13.0)
+        s.room("dining", "dining_room", 16.0)
         s.link("living", "dining", "open", "portal")
-        s.off("dining", "kitchen", "kitchen", 7.5)
+        s.off("dining", "kitchen", "kitchen", 7.0)
     else:
-        s.room("kitchen", "kitchen", 8.0)
+        s.room("kitchen", "kitchen", 7.2)
         s.link("living", "kitchen", "door", "open")
     s.off("kitchen" if s.odds(0.3) else "living", "bath", "bathroom", 4.2, 0.14)
     if beds >= 3 and s.odds(0.5):
         s.off("bed_1", "ensuite", "bathroom", 4.0, 0.14)
     if s.odds(0.75):
-        s.off("living", "veranda", "balcony", 6.5)
+        s.off("living", "veranda", "balcony", 5.5)
     if s.odds(0.3):
         s.off("kitchen", "utility", "utility", 4.5)
     return s.program(corner=0.2)
@@ -218,5 +223,5 @@ def shared_flat(s: Sketch, beds: int) -> FloorProgram:
     if s.odds(0.5):
         s.off("hall", "living", "living_room", 18.0)
     if s.odds(0.4):
-        s.off("kitchen", "balcony", "balcony", 4.5)
+        s.off("kitchen", "balcony", "balcony", 3.7)
     return s.program(into="hall", aspects=(1.0, 1.3, 1.5))

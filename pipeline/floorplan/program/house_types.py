@@ -9,11 +9,11 @@ from pipeline.floorplan.program.program_sketch import Sketch
 def terrace(s: Sketch, beds: int) -> FloorProgram:
     """Draw a Victorian terrace: a narrow house, hall and stairs along two parlours, the kitchen behind; bedrooms and bath above."""
     s.room("hall", "hallway", level=0)
-    s.off("hall", "front", "living_room", 17.5, level=0)
-    s.off("hall", "dining", "dining_room", 15.0, level=0)
+    s.off("hall", "front", "living_room", 17.0, level=0)
+    s.off("hall", "dining", "dining_room", 15.5, level=0)
     if s.odds(0.5):
         s.link("front", "dining", "open", "portal")
-    s.room("kitchen", "kitchen", 9.5, level=0)
+    s.room("kitchen", "kitchen", 8.5, level=0)
     s.link("dining", "kitchen", "door", "open")
     if s.odds(0.5):
         s.off("kitchen", "scullery", "utility", 4.5, level=0)
@@ -29,8 +29,8 @@ def terrace(s: Sketch, beds: int) -> FloorProgram:
 def detached_house(s: Sketch, beds: int) -> FloorProgram:
     """Draw a detached house of today: an entrance hall with the stairs, kitchen open to the dining room; a suite above."""
     s.room("entry", "entry", 8.0, level=0)
-    s.off("entry", "living", "living_room", 20.0 + 1.5 * beds, level=0)
-    s.room("kitchen", "kitchen", 11.0, level=0)
+    s.off("entry", "living", "living_room", 17.0 + 1.2 * beds, level=0)
+    s.room("kitchen", "kitchen", 9.5, level=0)
     s.room("dining", "dining_room", 17.0, level=0)
     s.link("kitchen", "dining", "open")
     s.link("living", "dining", "open", "portal", "door")

@@ -56,7 +56,7 @@ class Sketch:
         """Whether a room of that id was added."""
         return any(r.id == name for r in self.rooms)
 
-    def bedrooms(self, host: str, count: int, primary: float = 15.5, other: float = 12.8, **fields: Any) -> None:
+    def bedrooms(self, host: str, count: int, primary: float = 16.5, other: float = 13.0, **fields: Any) -> None:
         """Add bedrooms bed_1 ... off `host`; the first of several is the primary one."""
         for k in range(count):
             main = k == 0 and count > 1
