@@ -36,7 +36,7 @@ class TuneSettings:
 
     steps: int = 200
     learning_rate: float = 5e-4
-    inventory_steps: int = 200
+    inventory_steps: int = 40
 
 
 @dataclass(frozen=True, slots=True)
