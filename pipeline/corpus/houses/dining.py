@@ -22,6 +22,10 @@ DEEPEST = {2: 0.95, 4: 1.0, 6: 1.15, 8: 1.5}
 """Depth of a table for so many, where there is one [m]."""
 BEHIND = 0.3
 """Free floor behind a chair [m]."""
+SQUARE = 1.25
+"""Four sit around a table whose length is at most so many times its depth, one on each side."""
+SQUARE_SHARE = 0.35
+"""Share of the tables for four that are square, where there is one."""
 
 
 def furnish_dining(arranger: Arranger) -> None:
@@ -50,7 +54,12 @@ def furnish_dining_corner(arranger: Arranger) -> None:
 
 
 def _table(arranger: Arranger, count: int, chair: Model) -> Model | None:
-    """Draw a table long enough for half of the chairs on each long side (with six and more, two may sit at the ends)."""
+    """Draw a table long enough for half of the chairs on each long side (with six and more, two may sit at the ends; with four, one at each side of a square)."""
+    if count == 4 and arranger.chance(SQUARE_SHARE):
+        least, most = chair.size[0] + 0.25, chair.size[0] + 0.6
+        square = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, width=most, depth=most, narrowest=least)
+        if square is not None and _is_square(square):
+            return square
     along = {2: 1, 4: 2, 6: 2 if arranger.chance(0.4) else 3, 8: 3}[count]
     need = along * (chair.size[0] + 0.04)
     most = {2: 1.5, 4: 1.9, 6: 2.5, 8: 3.2}[count]
@@ -62,20 +71,30 @@ def _table(arranger: Arranger, count: int, chair: Model) -> Model | None:
 
 
 def seats_at(table: Model, chair: Model, count: int, gap: float) -> list[tuple[float, float, float]]:
-    """Return (across, ahead, turn) of each chair in the table's frame: long sides first, the ends where a side is full."""
+    """Return (across, ahead, turn) of each chair in the table's frame: long sides first, the ends where a side is full or the table square."""
     w, d, _ = table.size
-    fit = max(1, int((w + 0.02) / (chair.size[0] + 0.03)))
+    fit = 1 if count == 4 and _is_square(table) else max(1, int((w + 0.02) / (chair.size[0] + 0.03)))
     along = min(fit, count // 2)
     ends = count - 2 * along
     xs = [(k + 0.5) / along * w - w / 2 for k in range(along)] if along > 1 else [0.0]
     if along == 2:
         half = max(w / 4, chair.size[0] / 2 + 0.02)
         xs = [-half, half]
-    deepest = chair.size[1] * (0.5 - UNDER)
-    off = max(min(ACROSS, d / 2 + chair.size[1] / 2) + gap, d / 2 + deepest)
-    placed = [(x, sign * off, math.pi if sign > 0 else 0.0) for x in xs for sign in (1, -1)]
+    off = _off_table(d, chair, gap)
     side = w / 2 + chair.size[1] / 2 + min(gap, 0.05)
+    if along == 1 and ends:  # as far under each side, as far as chairs at a corner leave each other room
+        off, side = (max(_off_table(length, chair, gap), sum(chair.size[:2]) / 2 + 0.03) for length in (d, w))
+    placed = [(x, sign * off, math.pi if sign > 0 else 0.0) for x in xs for sign in (1, -1)]
     return placed + [(sign * side, 0.0, sign * -math.pi / 2) for sign in (1, -1)][: max(0, ends)]
+
+
+def _off_table(length: float, chair: Model, gap: float) -> float:
+    """Return how far a chair's middle is from that of a table so long in its direction [m]."""
+    return max(min(ACROSS, length / 2 + chair.size[1] / 2) + gap, length / 2 + chair.size[1] * (0.5 - UNDER))
+
+
+def _is_square(table: Model) -> bool:
+    return max(table.size[:2]) <= SQUARE * min(table.size[:2])
 
 
 def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:

@@ -2,14 +2,16 @@
 
 import math
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from sample_houses import house, houses, stock
-from shapely.geometry import LineString, Point, Polygon
+from shapely.affinity import rotate
+from shapely.geometry import LineString, Point, Polygon, box
 
 from pipeline import taxonomy
-from pipeline.corpus.houses import walkable_grid
+from pipeline.corpus.houses import dining, walkable_grid
 from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.planner import make_plan
 from pipeline.corpus.houses.room_occupancy import Space
@@ -155,6 +157,18 @@ def test_dining_chairs_face_their_table_and_a_pendant_hangs_above():
     assert chairs > 30
     assert square / chairs > 0.93
     assert lamps / tables > 0.6
+
+
+def test_four_chairs_at_a_square_table_have_a_side_each_and_room_beside_each_other():
+    model = {m.category: m for models in stock().by_category.values() for m in models}
+    chair = model["dining_chair"]
+    for side in (0.8, 0.9, 1.1):
+        seats = dining.seats_at(replace(model["dining_table"], size=(side, side, 0.75)), chair, 4, -0.1)
+        w, d = chair.size[:2]
+        boxes = [rotate(box(x - w / 2, y - d / 2, x + w / 2, y + d / 2), turn, use_radians=True) for x, y, turn in seats]
+        assert sorted(turn for *_, turn in seats) == pytest.approx([-math.pi / 2, 0.0, math.pi / 2, math.pi])
+        assert all(a.distance(b) > 0.01 for k, a in enumerate(boxes) for b in boxes[:k])
+        assert all(b.intersection(box(-side / 2, -side / 2, side / 2, side / 2)).area > 0 for b in boxes)
 
 
 def test_kitchens_have_a_run_with_sink_oven_and_fridge():
