@@ -141,8 +141,8 @@ def _between(
     """Return what cuts leave of a wall from `low` to `high`, each piece longer than `least` [m]."""
     stretches, at = [], low
     for first, last in [*sorted(cuts), (high, math.inf)]:
-        if first - at > least:
-            stretches.append(Stretch(edge, at, first, list(units)))
+        if min(first, high) - at > least:
+            stretches.append(Stretch(edge, at, min(first, high), list(units)))
         at = max(at, last)
     return stretches
 
@@ -283,7 +283,6 @@ def _hang(items: Sequence[Item], walls: Sequence[Edge], runs: list[list[int]], p
             else:
                 ends.append((at - wide, at + wide))
         low, high = (min(a for a, _ in ends), max(b for _, b in ends)) if ends else (BACK, edge.length - BACK)
-        cuts = [(min(first, high), last) for first, last in cuts]
         _hang_in(own, items, _between(edge, cuts, low, high, 0.2), poses, site.elevation + bottom)
 
 

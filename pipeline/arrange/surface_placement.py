@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline.arrange.item import wrap_yaw
 from pipeline.arrange.settings import ThingsSettings
-from pipeline.arrange.surfaces import Surfaces, surfaces
+from pipeline.arrange.surfaces import HIGHEST, Surfaces, surfaces
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
@@ -102,8 +102,8 @@ class Laying:
         placement = self.furniture[support]
         support_surfaces = surfaces(self.assets[placement.asset_id])
         turn = float(rng.normal(0, WOBBLE) if facing else rng.uniform(-math.pi, math.pi))
-        tops = self._candidates(rng, support_surfaces, placement.scale, asset.size, turn, backed=backed)
-        for top, x, y in (self._middles(support_surfaces, placement.scale, asset.size, turn) + tops) if centred else tops:
+        tops = self._candidates(rng, support_surfaces, placement, asset.size, turn, backed=backed)
+        for top, x, y in (self._middles(support_surfaces, placement, asset.size, turn) + tops) if centred else tops:
             z = float(support_surfaces.tops[top, 4] * placement.scale[2])
             if self._meets_box(support, asset.size, (x, y, z), turn):
                 continue
@@ -117,16 +117,17 @@ class Laying:
         return None
 
     def _candidates(
-        self, rng: np.random.Generator, support_surfaces: Surfaces, scale: Floats, size: Floats, turn: float, *, backed: bool
+        self, rng: np.random.Generator, support_surfaces: Surfaces, support: Placement, size: Floats, turn: float, *, backed: bool
     ) -> list[tuple[int, float, float]]:
         """Draw (surface, x, y) at which the thing lies wholly on a surface, object frame of the support."""
         if not len(support_surfaces):
             return []
         low, high = _reach(size, turn)
         margin = self.settings.margin
-        first = support_surfaces.tops[:, :2] * scale[:2] - low + margin
-        last = support_surfaces.tops[:, 2:4] * scale[:2] - high - margin
-        weight = np.where(support_surfaces.hidden, self.settings.hidden, 1.0) * (last >= first).all(1)
+        first = support_surfaces.tops[:, :2] * support.scale[:2] - low + margin
+        last = support_surfaces.tops[:, 2:4] * support.scale[:2] - high - margin
+        open_weight = _within_reach(support_surfaces, support)
+        weight = np.where(support_surfaces.hidden, self.settings.hidden, open_weight) * (last >= first).all(1)
         if weight.sum() <= 0:
             return []
         which = rng.choice(len(weight), self.settings.tries, p=weight / weight.sum())
@@ -136,12 +137,12 @@ class Laying:
         return [(int(k), float(x), float(y)) for k, (x, y) in zip(which, spots, strict=True)]
 
     @staticmethod
-    def _middles(support_surfaces: Surfaces, scale: Floats, size: Floats, turn: float) -> list[tuple[int, float, float]]:
+    def _middles(support_surfaces: Surfaces, support: Placement, size: Floats, turn: float) -> list[tuple[int, float, float]]:
         """Return (surface, x, y) of the middles of the open surfaces that are wide enough, the highest first."""
         low, high = _reach(size, turn)
-        extent = (support_surfaces.tops[:, 2:4] - support_surfaces.tops[:, :2]) * scale[:2]
-        middle = (support_surfaces.tops[:, 2:4] + support_surfaces.tops[:, :2]) * scale[:2] / 2
-        fits = np.flatnonzero((extent >= high - low).all(1) & ~support_surfaces.hidden)
+        extent = (support_surfaces.tops[:, 2:4] - support_surfaces.tops[:, :2]) * support.scale[:2]
+        middle = (support_surfaces.tops[:, 2:4] + support_surfaces.tops[:, :2]) * support.scale[:2] / 2
+        fits = np.flatnonzero((extent >= high - low).all(1) & ~support_surfaces.hidden & _within_reach(support_surfaces, support))
         return [
             (int(k), float(middle[k, 0]), float(middle[k, 1])) for k in fits[np.argsort(-support_surfaces.tops[fits, 4], kind="stable")]
         ]
@@ -188,6 +189,11 @@ class Laying:
         self.laid = self.laid.plus([asset_solid.rest.placed(position, yaw, UNIT)])
         if asset_solid.sweeps:
             self.laid_sweeps = self.laid_sweeps.plus([s.prisms.placed(position, yaw, UNIT) for s in asset_solid.sweeps])
+
+
+def _within_reach(support_surfaces: Surfaces, support: Placement) -> NDArray[np.bool_]:
+    """Tell which surfaces (m,) are low enough above the floor: the top of a wall cabinet is not, though it is of a height with a sideboard's."""
+    return np.asarray(support.position[2] + support_surfaces.tops[:, 4] * support.scale[2] < HIGHEST)
 
 
 @cached_on_asset

@@ -74,6 +74,14 @@ def test_the_judge_finds_no_fault(seed):
     assert {p.object_id for p in things if p.category == "laptop"} <= {j.object_id for j in after.joints}
 
 
+def test_nothing_lies_on_what_hangs_too_high_to_look_at():
+    hung = placed("tray_chest", 2.0, 2.6)
+    hung = replace(hung, position=np.array([*hung.position[:2], 1.4]))
+    places = [p for seed in range(20) for p in laid([hung], seed)]
+    assert places
+    assert all(p.position[2] < 1.6 for p in places)  # in the drawer and below it; its top is at 1.9 m
+
+
 def test_drawers_are_used_as_often_as_they_are_told_to():
     furniture = [placed("tray_chest", 2.0, 2.6)]
 
