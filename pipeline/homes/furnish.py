@@ -21,11 +21,13 @@ from pipeline.homes.request import Request, RoomJob
 from pipeline.homes.resources import Resources
 from pipeline.homes.rounding import round_placement
 from pipeline.retrieval.index import AssetIndex, Match
+from pipeline.retrieval.neighbours import part
 from pipeline.retrieval.taste import Taste, draw_finishes, draw_style, tasteful
-from pipeline.retrieval.wall_alignment import keep_at_walls
+from pipeline.retrieval.wall_alignment import keep_at_walls, put_before_walls
 from pipeline.taxonomy import Taxonomy
 
 PART = 1000  # between the numbers of a room's parts: more than homes have rooms
+SEATS = ("chair", "stool")  # super-categories
 FREE_CHOICE = 2  # tries of a room in which any category of an essential group will do
 
 
@@ -183,8 +185,21 @@ def retrieve(
             np.round(proposal.latent, 5).astype(np.float32),
             match.distance,
         )
-        placements.append(round_placement(placement))
-    return Draft(job, tuple(placements), tuple(lost), taste)
+        placements.append(placement)
+    return Draft(job, tuple(map(round_placement, _apart(placements, context, taxonomy))), tuple(lost), taste)
+
+
+def _apart(placements: Sequence[Placement], context: RoomContext, taxonomy: Taxonomy) -> list[Placement]:
+    """Return the placements, furniture on the floor moved out of its neighbours and of walls; seats are not: they belong under tables."""
+    apart = list(placements)
+    standing = [k for k, p in enumerate(placements) if (c := taxonomy.categories[p.category]).mount == "floor" and c.super not in SEATS]
+    if standing:
+        own = [placements[k] for k in standing]
+        position, yaws, sizes = (np.array([getattr(p, name) for p in own]) for name in ("position", "yaw", "size"))
+        centres = part(position[:, :2], yaws, sizes)
+        for k, p, centre in zip(standing, own, centres, strict=True):
+            apart[k] = replace(p, position=put_before_walls(np.array([*centre, p.position[2]]), p.yaw, p.size, context.polygon))
+    return apart
 
 
 def _matches(job: RoomJob, index: AssetIndex, taste: Taste, proposals: Sequence[Proposal]) -> list[Match | None]:

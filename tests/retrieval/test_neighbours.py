@@ -1,0 +1,40 @@
+"""Retrieved assets are moved out of walls and of what they stand flush with, and nothing else is moved."""
+
+import numpy as np
+import pytest
+
+from pipeline.retrieval.neighbours import CLEAR, part
+from pipeline.retrieval.wall_alignment import put_before_walls
+
+ROOM = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
+SIZE = np.array([1.0, 0.6, 0.9])
+
+
+@pytest.mark.parametrize("yaw", [0.0, np.pi / 2, np.pi, -np.pi / 2])
+@pytest.mark.parametrize("deep", [0.003, 0.05, 0.11])
+def test_what_sticks_into_a_wall_comes_to_stand_before_it(yaw, deep):
+    back = np.array([-np.sin(yaw), np.cos(yaw)])
+    middle = np.array([2.0, 1.5])
+    to_wall = 1.5 if abs(back[1]) > 0.5 else 2.0
+    moved = put_before_walls(np.array([*(middle + back * (to_wall - SIZE[1] / 2 + deep)), 0.0]), yaw, SIZE, ROOM)
+    np.testing.assert_allclose(moved, [*(middle + back * (to_wall - SIZE[1] / 2 - CLEAR)), 0.0], atol=1e-9)
+
+
+def test_what_is_in_the_room_or_far_beyond_a_wall_or_too_large_stays():
+    for position, size in (([2.0, 2.6, 0.0], SIZE), ([2.0, 3.2, 0.0], SIZE), ([2.0, 1.5, 0.0], np.array([1.0, 3.1, 1.0]))):
+        np.testing.assert_array_equal(put_before_walls(np.array(position), 0.0, size, ROOM), position)
+
+
+def test_flush_neighbours_part_along_the_side_by_which_they_meet():
+    centres = np.array([[1.0, 1.0], [1.95, 1.1], [1.0, 1.55]])
+    yaws, sizes = np.array([0.0, np.pi, np.pi / 2]), np.array([[1.0, 0.6], [1.0, 0.6], [0.6, 1.0]])
+    moved = part(centres[:2], yaws[:2], sizes[:2])
+    np.testing.assert_allclose(moved, [[1.0 - 0.026, 1.0], [1.95 + 0.026, 1.1]], atol=1e-9)
+    moved = part(centres[[0, 2]], yaws[[0, 2]], sizes[[0, 2]])
+    np.testing.assert_allclose(moved[1] - moved[0], [0.0, 0.6 + CLEAR], atol=1e-9)
+
+
+def test_what_reaches_deep_or_stands_askew_or_apart_stays():
+    for second, yaw in (([1.6, 1.0], 0.0), ([1.95, 1.0], 0.4), ([2.05, 1.0], 0.0)):
+        centres = np.array([[1.0, 1.0], second])
+        np.testing.assert_array_equal(part(centres, np.array([0.0, yaw]), np.array([[1.0, 0.6], [1.0, 0.6]])), centres)
