@@ -20,6 +20,7 @@ REST, OPEN, SHUT, LEFT = 5.0, 2.5, 2.0, 0.5  # [s] at rest; pushing; pushing bac
 AFTER = 1.5  # [s] by which a joint waits for those that must be open before it
 SAMPLE = 0.25  # [s] between looks at what lies about
 SETTLE, ALONE = 1.0, 2.0  # [s] left alone until what may sleep does; then for the speed of that
+COAST = 1.0  # [s] in which what the hand lets go comes to rest, with what lies in it, before anything is watched
 WIDE = 0.95  # share of its range from which on a joint is held open; what another blocks is let go, or it creeps on
 PACE, LEAST = (
     1.0,
@@ -77,7 +78,10 @@ def _trial(engine: Engine, plan: dict[str, Any]) -> dict[str, Any]:
     together = np.zeros(len(joints))
     for _ in range(round((OPEN + AFTER) / engine.dt)):
         together = np.fmax(together, hand.push(push))
-    wide, _ = _rest(engine, np.where(engine.positions() >= WIDE * upper, push, 0.0), fresh=False)
+    held = np.where(engine.positions() >= WIDE * upper, push, 0.0)
+    for _ in range(round(COAST / engine.dt)):
+        engine.step(held)
+    wide, _ = _rest(engine, held, fresh=False)
     return {
         "steps_per_second": speed,
         "alone_steps_per_second": alone,
