@@ -41,7 +41,7 @@ def home_layer(home: Home, assets: Mapping[str, Asset], library: str = "../../as
     building: list[Prism] = []
     for level, built in shells.items():
         elevation = level * plan.storey_height
-        solids = [solid for solid in masonry(plan, level, built) if solid.kind != "lintel" or solid.bottom < OVER]
+        solids = [solid for solid in masonry(plan, level, built) if solid.bottom < OVER]  # nothing of a robot comes to lintels and ceilings
         building += [replace(solid, bottom=solid.bottom + elevation, top=solid.top + elevation) for solid in solids]
         groups["Walls"].append(walls_text("/World/Walls", plan, level, built, solids, materials))
         groups["Doors"] += door_texts("/World/Doors", elevation, built, materials)
