@@ -1,0 +1,36 @@
+"""Everyday sentences that were once read wrong."""
+
+import pytest
+
+from pipeline.floorplan import parse
+
+
+def linked(prompt):
+    program = parse(prompt)
+    kinds = {room.id: room.type for room in program.rooms}
+    return {(*sorted((kinds[k.a], kinds[k.b])), k.kind) for k in program.links if k.stated}
+
+
+def test_a_second_bedroom_has_an_area_of_its_own():
+    areas = [r.area.target for r in parse("T3 avec une grande chambre de 15 m2 et une petite de 10 m2").rooms if r.type == "bedroom"]
+    assert areas == pytest.approx([15.0, 10.0])
+
+
+def test_an_open_plan_kitchen_is_open_whatever_comes_after_it():
+    links = linked("I need a 2 bed flat with an open plan kitchen and a balcony off the living room.")
+    assert ("balcony", "living_room", "door") in links
+    assert ("kitchen", "living_room", "door") not in links
+
+
+def test_what_a_counted_home_has_is_not_its_kitchens():
+    assert ("closet", "kitchen", "door") not in linked("3LDK with a walk-in closet next to the master bedroom.")
+
+
+def test_no_walls_between_rooms_leaves_them_open():
+    links = linked("Loft with no walls between kitchen, dining and living.")
+    assert {("dining_room", "living_room", "open"), ("dining_room", "kitchen", "open")} <= links
+
+
+def test_the_middle_of_a_home_is_told_to_be_unbuilt():
+    said = "Piso de 80 m2 con dos dormitorios y el salón en el centro."
+    assert any(said[s.start : s.end] == "en el centro" for s in parse(said).unbuilt)
