@@ -4,8 +4,6 @@ By building, doors of rooms, and the objects' categories; of objects also by wha
 furniture that does not open, small things. What is switched off in a home is not counted.
 """
 
-from __future__ import annotations
-
 import sys
 from collections import Counter
 from pathlib import Path

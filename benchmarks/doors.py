@@ -5,8 +5,6 @@ leaf and handles to anything that stands or lies in the home is taken by MuJoCo'
 building; negative where one enters the other. A door that meets nothing within REACH has that much.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -7,8 +7,6 @@ through pxr, MJCF with MuJoCo, URDF and GLB by their specifications. Compared ar
 of every body its mass, its centre and its inertia tensor.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import struct

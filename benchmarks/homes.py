@@ -5,8 +5,6 @@
 Needs what `make run` leaves: data/ and models/.
 """
 
-from __future__ import annotations
-
 import os
 import resource
 import subprocess

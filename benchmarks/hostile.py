@@ -6,8 +6,6 @@ Good files of fifteen kinds are damaged by the generator of the tests (`tests/so
 cut, moved or repeated up to 4 MiB, nested brackets, the end cut off. Nothing is random: file k is the same on every machine.
 """
 
-from __future__ import annotations
-
 import sys
 import tempfile
 from collections import Counter

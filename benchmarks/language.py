@@ -5,8 +5,6 @@
 {prompt, reply}) holds what it has answered before, is read instead of asking, and gets what is new.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -9,8 +9,6 @@ named. `assets` puts assets of data/assets, articulated ones and small things in
 Pushes are those of engines/plan.py, the trial that of engines/trial.py. Everything found lies in build/physics/*.json.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -7,8 +7,6 @@ python -m benchmarks.plan failures --count 10000    programs of the prior, and o
 python -m benchmarks.plan knobs --count 120         every knob against its own term; tables over 100 seeds and more are kept in benchmarks/records/knobs.json
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 

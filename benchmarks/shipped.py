@@ -5,8 +5,6 @@ times: FID and KID of plan views, both classifiers, each beside what training ro
 rooms. The 32 homes of `make run` hold too few rooms for a steady figure: give a dataset of some hundred homes.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

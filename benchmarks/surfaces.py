@@ -5,8 +5,6 @@ nearest triangle that is seen; and points that are seen on handles, moving parts
 outside of all they are). Where nothing comes from outside (pipeline/sources/meshes/reach.py), nor above 2 m, there is nothing to touch. Largest and 95th percentile [mm] by what is touched; build/surfaces.json keeps every asset's.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -7,8 +7,6 @@ file of the same name holds the fields of provenance that the asset itself does 
 Wikidata is known. `simready-validate --profile Robotics-Prop --version 4.0.0 OUT/<asset_id>/usd/<asset_id>.usda` looks at one.
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime as dt
 import json

@@ -1,7 +1,5 @@
 """Cards: `manifests/categories/<name>.yaml` holds all that is known of one category of things, each fact once; the fields here are its schema."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace

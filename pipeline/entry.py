@@ -1,7 +1,5 @@
 """How `python -m stages.<name>` runs a stage's main: in the checkout, errors of ours as one line and an exit code."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable

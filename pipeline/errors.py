@@ -1,7 +1,5 @@
 """The project's exceptions. Each names the offending thing and the remedy; the CLI maps each to its exit code."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 

@@ -1,7 +1,5 @@
 """Digests and atomic files: nothing half-written survives a kill."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

@@ -1,7 +1,5 @@
 """params.yaml and other files of settings, read strictly: an unknown key, a wrong type or a bad value is an error that names it."""
 
-from __future__ import annotations
-
 import dataclasses
 import difflib
 import functools

@@ -1,7 +1,5 @@
 """Explicit randomness: every generator is derived from (seed, name, keys); nothing draws from a global one."""
 
-from __future__ import annotations
-
 import hashlib
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Styles of furniture, from manifests/styles.yaml: what they are called, and what each reaches for in timber, colour, cloth, metal, legs and ornament."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field

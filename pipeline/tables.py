@@ -1,7 +1,5 @@
 """Parquet tables on disk: written atomically with the schema's metadata, read with the schema checked."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The factory's vocabulary: the cards of its categories, types of rooms, and the names that other people give them."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """What a table is: ordered columns, each with Arrow type, unit, frame and doc, kept in the Parquet metadata."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Checks a dataset to the last byte, wherever it lies and without the factory: what `sfgen verify` runs. The first wrong thing is named."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

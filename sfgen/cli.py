@@ -4,8 +4,6 @@ Exit codes: 0 done; 1 wrong content, or a run that failed; 2 something wrong in 
 cannot be met; 130 interrupted. Whatever goes wrong is one line on stderr: `sfgen: <thing>; <remedy>`.
 """
 
-from __future__ import annotations
-
 import gc
 import importlib
 import os

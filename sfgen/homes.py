@@ -1,7 +1,5 @@
 """What a home is, as plain records: the columns of the tables, lists of numbers as arrays."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import MISSING, dataclass, field, fields
 from pathlib import Path

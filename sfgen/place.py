@@ -1,7 +1,5 @@
 """Where a dataset lies: a folder of this machine, or of any file system that fsspec knows (s3://, gs://, memory:// ...)."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, BinaryIO
 

@@ -1,7 +1,5 @@
 """`sfgen doctor --use PATH`: takes real copies into use; `--use embedded` goes back to the embedded corpus."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from pathlib import Path

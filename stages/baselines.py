@@ -4,8 +4,6 @@ Does nothing unless `metrics.baselines` of params.yaml is true. Reads data/table
 models/baselines/ (the weights of ours) and metrics/baselines.json.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from pathlib import Path

@@ -3,8 +3,6 @@
 Writes data/raw/, metrics/calibration.json (the corpus beside what is known of 3D-FRONT) and plots/classes.csv.
 """
 
-from __future__ import annotations
-
 import json
 import multiprocessing
 import shutil

@@ -1,7 +1,5 @@
 """`sfgen doctor`: what is installed, what is made, what is missing and the command that makes it."""
 
-from __future__ import annotations
-
 import importlib.metadata
 import json
 import os

@@ -4,8 +4,6 @@ Reads data/tables/assets.parquet and data/assets/, writes data/latents/latents.p
 metrics/encode.json.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`sfgen export`: homes of a dataset as MJCF, URDF or GLB."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from pathlib import Path

@@ -3,8 +3,6 @@
 Not a stage of `dvc repro`: the weights are released, so that figures of different runs are in one measure. Takes four CPU minutes.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

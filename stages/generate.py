@@ -1,7 +1,5 @@
 """`sfgen generate`: one home from words, or in a plan of the user's own, as a dataset of one with the assets that it uses."""
 
-from __future__ import annotations
-
 import json
 import sys
 from dataclasses import asdict

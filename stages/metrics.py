@@ -1,7 +1,5 @@
 """Stage `metrics`: every metric and table of the paper, with intervals and the noise floor; plots; the report."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from operator import itemgetter

@@ -1,7 +1,5 @@
 """`sfgen peers`: the training tables as the cached rooms of ATISS and DiffuScene, on exactly our split."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`sfgen plan`: words, or a plan of the user's own → floor plan; drawn in the terminal, or written as JSON, SVG or PNG."""
 
-from __future__ import annotations
-
 import json
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Stage `postopt`: drafts → walkable-area control → separation → verification → export; the dataset in data/shards."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path

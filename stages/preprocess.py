@@ -3,8 +3,6 @@
 Reads data/raw/ (or the user's copies), writes data/tables/*.parquet, data/tables/relations.json (how things stand to each other) and data/assets/*.safetensors.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from pathlib import Path

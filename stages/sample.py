@@ -1,7 +1,5 @@
 """Stage `sample`: prompts → floor plans → guided diffusion → retrieval; the first attempt at every home of the dataset."""
 
-from __future__ import annotations
-
 from functools import partial
 from pathlib import Path
 

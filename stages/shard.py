@@ -1,7 +1,5 @@
 """`sfgen shard`: a dataset of many homes, chunk by chunk, on as many workers as there are; resumes after a kill."""
 
-from __future__ import annotations
-
 import shlex
 import sys
 from dataclasses import replace

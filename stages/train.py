@@ -4,8 +4,6 @@ Reads data/tables/ and data/latents/, writes models/denoiser.safetensors, models
 plots/loss.csv and DVCLive's folder dvclive/.
 """
 
-from __future__ import annotations
-
 import os
 from functools import partial
 from pathlib import Path

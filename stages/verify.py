@@ -1,7 +1,5 @@
 """`sfgen verify`: is a dataset whole, do its stages open as they should."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from dataclasses import asdict, replace

@@ -3,8 +3,6 @@
 Without it the workers of stage `sample` would compile the same functions, each for itself, before their first home.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from pipeline.entry import run

@@ -1,7 +1,5 @@
 """MuJoCo 4 with its own reader of USD; it loads the overlay beside the stage."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

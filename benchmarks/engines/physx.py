@@ -1,7 +1,5 @@
 """PhysX by `ovphysx` (the engine of Isaac Sim), on the CPU."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

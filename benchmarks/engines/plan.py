@@ -1,7 +1,5 @@
 """What is to be done to a stage: its joints with the push that each gets, which go together, and the bodies that lie about."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ An adaptor shows one engine as arrays in the order of the plan (see plan.py); wh
 engines differ in nothing else. It knows numpy alone, for each engine runs in a Python of its own.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import time

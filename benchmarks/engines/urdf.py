@@ -7,8 +7,6 @@ Needs sapien, yourdfpy, usd-core, scipy and defusedxml, in an environment of its
 origin they tell a micrometre.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import runpy

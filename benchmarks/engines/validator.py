@@ -1,7 +1,5 @@
 """NVIDIA's USD validator (`usd-validation-nvidia`): what it finds, by rule, as `python validator.py STAGE PLAN OUT`."""
 
-from __future__ import annotations
-
 import json
 import sys
 from collections import Counter

@@ -1,7 +1,5 @@
 """Lays out the top views of docs/images/homes.png: `python benchmarks/pictures/homes.py DATASET docs/images SCENE SCENE SCENE SCENE`."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from pathlib import Path

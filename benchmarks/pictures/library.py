@@ -5,8 +5,6 @@
 One sheet per group of categories goes to FOLDER/images; of what opens, two pictures stand side by side, closed and open. Needs what `make run` leaves: data/.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path

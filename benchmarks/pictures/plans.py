@@ -1,7 +1,5 @@
 """Draws the plans of docs/images/plans.png: `python benchmarks/pictures/plans.py docs/images`."""
 
-from __future__ import annotations
-
 import io
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Walls and openings of a plan under audit: where each stands, what it joins, how wide it is, where its leaf turns."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping
 

@@ -4,8 +4,6 @@ Only polygons, openings and the completed program are looked at; nothing of the 
 `apertures` looks at walls and openings; here are rooms, areas, relations, storeys and ways.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 import numpy as np

@@ -4,8 +4,6 @@ A refusal, a crash and whatever the audit finds are failures alike. Nothing stop
 A run of LEAST programs or more is kept in benchmarks/records/failures.json.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import sys
 import time

@@ -1,7 +1,5 @@
 """Each knob against its own term: a table, its record (benchmarks/records/knobs.json) and the picture of it (docs/images/knobs.png)."""
 
-from __future__ import annotations
-
 import json
 import os
 

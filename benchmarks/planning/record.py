@@ -1,7 +1,5 @@
 """Figures that are too dear for `make run`: kept under benchmarks/records/ with the command and the commit that made them, for the report to show."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from collections.abc import Mapping

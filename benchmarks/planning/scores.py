@@ -1,7 +1,5 @@
 """Scores of the benchmark's prompts: from the words alone, and given the rooms, links and areas of the ground truth."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

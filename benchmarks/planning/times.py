@@ -1,7 +1,5 @@
 """CPU time from program to plan in a warm process, and how much search it buys."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

@@ -6,8 +6,6 @@ kinds: `home` gives rooms the types that fit (bathrooms and closets at ends, bed
 that one walks through bedrooms and offices have no window; only bathrooms stay at ends in both.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

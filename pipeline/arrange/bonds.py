@@ -4,8 +4,6 @@ A member is bound to the one anchor, larger than itself, whose learnt modes it i
 trees, with a bed, a sofa, a table at each root. The modes are those of `pipeline.relations`, as rows of numbers.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Poses that a group may take, each with its cost in metres: near by, along walls, at its anchor, all over the room."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

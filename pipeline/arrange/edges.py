@@ -1,7 +1,5 @@
 """The walls of a room: the edges of its polygon, and the openings in them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Groups: an anchor with the members that move when it does."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Free wall: where pictures, mirrors, towels and curtains hang, clear of openings, of what stands there and of all that moves."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One object while it is being arranged: its placement, what it takes of the room, what is known of its category."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

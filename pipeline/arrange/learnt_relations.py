@@ -1,7 +1,5 @@
 """What the training tables say of categories and pairs of them, in the form that the arranger asks for."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal

@@ -1,7 +1,5 @@
 """What already stands in a room, whether a group can join it, and whether the floor still hangs together."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection
 from typing import NamedTuple

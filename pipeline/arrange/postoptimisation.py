@@ -1,7 +1,5 @@
 """Post-optimisation of one room: algorithm 2 and separation in turn, until both are content."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Rugs: flat weaves on the floor, under a group of seats or a bed, before a basin, in the middle of a room."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

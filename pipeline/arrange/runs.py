@@ -3,8 +3,6 @@
 Which wall is the draft's choice. Doors and their swing stay free, whatever is tall stands at an end, a unit stands between sink and cooker.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

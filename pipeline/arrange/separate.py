@@ -5,8 +5,6 @@ where that goes, else its anchor and then each member to another place at it. Th
 is started over with an eye on the floor at every step, those first that found no place, later as smaller assets, or not at all.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 

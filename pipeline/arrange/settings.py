@@ -1,7 +1,5 @@
 """Settings of the post-optimisation: section `postopt` of params.yaml."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 

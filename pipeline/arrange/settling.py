@@ -1,7 +1,5 @@
 """The groups of a room find their places: first those that are free where they belong, then the rest, the largest first."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """What an asset takes of a room: its body, the space its parts move through, the place in front of them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

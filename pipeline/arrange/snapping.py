@@ -1,7 +1,5 @@
 """Where the objects of a draft would stand if what it nearly holds were exact: at their anchors, at walls, square to them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Where things can stand on and in furniture: the level tops of its convex pieces, boards inside and drawers' floors included."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ category that is smaller. The paper measures (A_room - sum A_i) / A_room; here i
 gets to, since overlapping footprints and cut-off corners make the paper's figure say nothing of walking.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice

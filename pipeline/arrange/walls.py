@@ -1,7 +1,5 @@
 """Standing at walls: poses with the back to them, and what openings cost there."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

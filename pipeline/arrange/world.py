@@ -1,7 +1,5 @@
 """All objects of a room as arrays: their prisms at rest and placed. What the compiled search works on."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

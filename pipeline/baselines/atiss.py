@@ -5,8 +5,6 @@ object, attribute by attribute (class, centre, yaw, size), each given those befo
 on a random prefix of a random permutation. It has no shape latent: assets would be looked up by size.
 """
 
-from __future__ import annotations
-
 import math
 
 import torch

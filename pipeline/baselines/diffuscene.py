@@ -5,8 +5,6 @@ a penalty on overlaps of the expected boxes. In place of their convolutional net
 transformer in which slots are alike; one net serves all room types, told the type.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import torch

@@ -1,7 +1,5 @@
 """Rooms furnished by each baseline, in the words of the layout model: a context in, proposals out."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

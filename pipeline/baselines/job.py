@@ -1,7 +1,5 @@
 """What a run of the baselines reads and holds: the training rooms as tensors, and the networks that are trained on them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Mixtures of discretised logistics, by which the autoregressive transformer says where things stand (Salimans et al. 2017)."""
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor
 

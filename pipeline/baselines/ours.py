@@ -1,7 +1,5 @@
 """Our own layout model at the price of the baselines: trained for the same CPU seconds on the same rooms."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from dataclasses import replace

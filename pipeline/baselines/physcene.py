@@ -6,8 +6,6 @@ a constant. All three are means over a room's objects; the peers' further divisi
 is left out, so that a room does not know who shares its batch.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

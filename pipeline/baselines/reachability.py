@@ -4,8 +4,6 @@ A raster per room. Ways lead from the largest part of the free floor to the next
 opens; they are the cheapest over a map that is hot where boxes are.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -9,8 +9,6 @@ Not printed, and so settings: gamma_1, gamma_2 and lambda (`quantity_scale` is l
 gamma_2; eq. 1 has a pair of its own, since what steers well at the last levels swamps the noise at the first). Which slots T marks is not said: here those that are least empty at that step.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import torch

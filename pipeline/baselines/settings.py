@@ -1,7 +1,5 @@
 """The numbers of the baselines that stand in params.yaml (section `baselines`)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """Training for a stated number of CPU seconds, the same for every baseline."""
 
-from __future__ import annotations
-
 import copy
 import math
 import time

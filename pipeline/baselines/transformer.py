@@ -1,7 +1,5 @@
 """What the networks of the baselines are made of: an encoder of the outline, attention, sines."""
 
-from __future__ import annotations
-
 import math
 
 import torch

@@ -1,7 +1,5 @@
 """What is known of 3D-FRONT, from manifests/calibration/front.yaml, with intervals for what was counted on 12 scenes."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Mapping, Sequence

@@ -4,8 +4,6 @@
 rounded to 5 decimals; only furniture children carry poses, meshes are in world coordinates.
 """
 
-from __future__ import annotations
-
 import math
 import uuid
 from collections.abc import Sequence

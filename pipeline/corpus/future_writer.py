@@ -3,8 +3,6 @@
 Frame of the OBJ files ("3D-FRONT format", canonical model frame): metres, y up, front +z, bottom centre at the origin.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Houses as scene files, with the defects of real ones or without, each counted as it is written."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

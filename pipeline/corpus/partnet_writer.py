@@ -4,8 +4,6 @@ Meshes lie in the mesh frame (x right, y up, z front), centred and scaled to abo
 the base joint turns that into PartNet's world (z up, front -x): world = (-z, -x, y).
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What params.yaml says about the embedded corpus."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from pipeline.errors import ContentError

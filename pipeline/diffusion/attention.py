@@ -4,8 +4,6 @@ Training runs on one or two cores, where small operations cost more than arithme
 input (biases of pairs, keys of the floor, modulations) is asked once for all of them, by the denoiser, and handed in.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Weights and checkpoints on disk: safetensors only, written whole or not at all."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass

@@ -4,8 +4,6 @@ The paper prints the guidance as mu + lambda Sigma grad phi, with phi a loss (a 
 to the letter that CLIMBS the penalty. Everything here that is called a `descent` is therefore -grad phi, and is added.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import torch

@@ -1,7 +1,5 @@
 """What samplers, guidance and the loss ask of a network; `checkpoint.build_net` chooses which one answers."""
 
-from __future__ import annotations
-
 from typing import Any, Protocol
 
 from torch import Tensor

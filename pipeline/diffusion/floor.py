@@ -1,7 +1,5 @@
 """The floor condition: walls and openings of a room as tokens."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,8 +6,6 @@ given in the unit of what moves, and clipped. It is the expected x0 that is move
 later step can then bring back what the guidance has torn apart.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import torch

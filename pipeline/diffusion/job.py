@@ -1,7 +1,5 @@
 """A training job: what one process of a run reads and holds."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from dataclasses import asdict, replace

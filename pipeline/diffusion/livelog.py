@@ -1,7 +1,5 @@
 """Live metrics of a training run: plots/loss.csv always, DVCLive where it is installed. Neither git nor network is touched."""
 
-from __future__ import annotations
-
 import csv
 import importlib.util
 import os

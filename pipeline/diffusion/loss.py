@@ -1,7 +1,5 @@
 """The training loss: paper eq. 1 on the channels of objects whose classes are known."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import torch

@@ -4,8 +4,6 @@ Muon moves a matrix by its momentum with all singular values made 1, so that eve
 pace; docs/model.md has figures of both. `optimiser: adamw` is AdamW throughout.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import torch

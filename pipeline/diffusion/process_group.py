@@ -3,8 +3,6 @@
 On small networks a second torch thread gains next to nothing, a second process nearly doubles the speed.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager

@@ -7,8 +7,6 @@ once more in units of the noise itself: for a side that belongs at a wall, the g
 is to be predicted, at every level alike.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import torch

@@ -1,7 +1,5 @@
 """Training rooms: table rows to padded arrays."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ The paper's levels t = 1..1000 are those of DDPM's linear beta (1e-4 to 0.02); i
 are noise levels, and `lambda_of` says which. Samplers choose their own levels between FIRST and LAST, even in lambda.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

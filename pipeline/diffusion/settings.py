@@ -1,7 +1,5 @@
 """Settings of the layout model: its shape, its training, how it is sampled."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """The solver: from noise to clean channels along falling noise levels."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Training of the denoiser: a loop that yields, so that the caller logs, saves and stops."""
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Callable, Iterator

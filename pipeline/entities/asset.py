@@ -1,7 +1,5 @@
 """An asset: links of visual meshes and convex colliders, joined in a tree, at rest with all joints at 0."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """Asset files: one safetensors file per asset, meshes as tensors, the rest as JSON in its header."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import asdict

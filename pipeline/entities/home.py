@@ -1,7 +1,5 @@
 """A home: a plan and the things placed in it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A floor plan: rooms as polygons of inner wall faces, and the openings between them."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What a reason code says, from manifests/reasons.yaml: nothing is left out, changed or tried again without one."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Jobs on a Dask scheduler that the user names. SLURM, Kubernetes and SSH clusters are started with Dask's own launchers; what they yield is an address."""
 
-from __future__ import annotations
-
 import logging
 import os
 from collections.abc import Callable, Iterator

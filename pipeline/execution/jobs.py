@@ -1,7 +1,5 @@
 """map_jobs: one interface to this process, to local processes and to a Dask cluster; what becomes of jobs that take their workers with them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Generator, Iterable, Iterator
 from typing import TypeVar, overload
 

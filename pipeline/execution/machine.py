@@ -1,7 +1,5 @@
 """What of this machine the process may use."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import sys

@@ -1,7 +1,5 @@
 """What a step tells while it works: how far it is. Passed to who called map_jobs, where the way is short; lost elsewhere (Dask)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

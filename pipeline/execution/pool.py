@@ -1,7 +1,5 @@
 """Jobs on processes of this machine, over pipes: no port is opened, and a worker that dies or keeps silent is replaced."""
 
-from __future__ import annotations
-
 import functools
 import multiprocessing
 import os

@@ -1,7 +1,5 @@
 """How far a run is, on stderr: a bar on a terminal, a line now and then elsewhere, JSON lines for machines, or nothing."""
 
-from __future__ import annotations
-
 import json
 import sys
 import time

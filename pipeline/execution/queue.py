@@ -1,7 +1,5 @@
 """Jobs that wait for workers, and what becomes of those that take their workers with them."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Figures are of drafts, as boxes: nothing is retrieved, moved or repaired. What c
 come from PartNet, for made and real rooms alike, and its extended state is the paper's box.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Figures of the dataset that ships, and counts of what was left out on the way."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

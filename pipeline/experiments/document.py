@@ -1,7 +1,5 @@
 """Writes the report: plots, top views, path-traced views, and the page that shows them with the figures."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """The knob experiment: each of the twelve style knobs is turned from -3 to 3, and its own energy term is measured on the plans."""
 
-from __future__ import annotations
-
 import multiprocessing
 from collections.abc import Collection, Mapping
 from concurrent.futures import ProcessPoolExecutor

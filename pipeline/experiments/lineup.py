@@ -1,7 +1,5 @@
 """Real and made rooms side by side, from above: in an unlabelled order first, labelled in the next picture."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The paper's tables from trials: quantity, walkable area, articulation, ablation, categories."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Files of prompts: text with a prompt a line, or YAML, JSON or JSON lines with ground truth; checked before anything is planned."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path

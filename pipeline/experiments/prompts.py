@@ -1,7 +1,5 @@
 """Prompts of a file, planned with several seeds: scores where there is ground truth, failures and seconds everywhere."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Made rooms beside real ones: relation rates, classifiers, image metrics, novelty; and what harm does to each of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Rooms of the test split as jobs for the factory."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import TypeVar
 

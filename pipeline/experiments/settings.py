@@ -1,7 +1,5 @@
 """The numbers of the experiments that stand in params.yaml."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """Conditions of an experiment: rooms drafted, judged as they come, finished and judged again; as table rows."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

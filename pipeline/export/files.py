@@ -1,7 +1,5 @@
 """The files that MJCF and URDF share: a model's meshes as OBJ with their materials, its textures beside them."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A folder of exported homes: the library's things once, homes that refer to them; whatever has its name there is whole."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """Frames: where prims are, and the way back."""
 
-from __future__ import annotations
-
 import numpy as np
 from pxr import Usd, UsdGeom
 

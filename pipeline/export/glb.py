@@ -4,8 +4,6 @@ A joint is a node in whose frame the joint moves (extras: type, axis, limits); t
 its extras. Meshes that several objects share are written once. glTF is Y up: the root node turns the home, all below it is Z up.
 """
 
-from __future__ import annotations
-
 import json
 import struct
 from typing import Any

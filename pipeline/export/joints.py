@@ -1,7 +1,5 @@
 """Joints of a stage: what they join, about which axis, how far, against which resistance."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -4,8 +4,6 @@ Bodies stand in the frames that they have in USD; joints are `<object>/<joint>`,
 Static friction has no place in MuJoCo; its one coefficient is the dynamic one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 

@@ -3,8 +3,6 @@
 Metres, kilograms, radians, Z up; lengths within a body are in the body's frame. Transforms are (4, 4), T_parent_child, and rigid.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

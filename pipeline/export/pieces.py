@@ -1,7 +1,5 @@
 """What one sees of a body and what collides, in the body's frame: meshes of one look merged, colliders as boxes and hulls."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterator
 from itertools import product

@@ -3,8 +3,6 @@
 The overlays for MuJoCo are read where there are any: only they tell how hard the stops are.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
 

@@ -4,8 +4,6 @@ URDF knows one robot a file, so a home is `home.json` beside its files; things o
 A link's frame lies in its joint, as the format wants it, and is turned as its body is in USD.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring

@@ -4,8 +4,6 @@ Such as NVIDIA's conversion of the 2015 weights, which takes 8-bit images (B, 3,
 gives 2,048 numbers each. Nothing is downloaded.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -5,8 +5,6 @@ each other (the layout features of `pipeline.metrics`), and how its furniture wa
 features look at arrangement, which nets of photographs do not.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

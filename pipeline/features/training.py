@@ -1,7 +1,5 @@
 """Training of the net for plan views: two cross-entropies and a regression, on turned and mirrored views."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

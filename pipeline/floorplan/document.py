@@ -3,8 +3,6 @@
 `document_schema` exports the format as JSON Schema; docs/floorplan.md describes it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 

@@ -1,7 +1,5 @@
 """Prompt → program by whichever engine is there: the user's language model, else the built-in parser."""
 
-from __future__ import annotations
-
 import logging
 
 from pipeline.errors import RefusedError, UsageError

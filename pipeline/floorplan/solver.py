@@ -1,7 +1,5 @@
 """Program → plan: slicing start, annealing, realisation; restarts until every condition holds."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

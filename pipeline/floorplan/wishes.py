@@ -1,7 +1,5 @@
 """Words about the furniture of a plan that is given: they may name its rooms, and ask for no others."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 

@@ -3,8 +3,6 @@
 Boxes turn about +Z only. Footprint corners are counter-clockwise from the object's lower left (-w/2, -d/2).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Compilation of hot loops: numba with a disk cache where one can be written, without it elsewhere (a read-only checkout)."""
 
-from __future__ import annotations
-
 import hashlib
 import importlib
 import os

@@ -4,8 +4,6 @@ Groups are given as `start` (G + 1,): prisms start[g] .. start[g + 1] - 1 belong
 plan polygons overlap by more than `tolerance` [m] in depth and their z intervals by more than `tolerance`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

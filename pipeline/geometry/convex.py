@@ -3,8 +3,6 @@
 A polygon is (V, 2) [m], counter-clockwise; repeated vertices are allowed (they pad batches of unequal polygons).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What room doors sweep, as prisms."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

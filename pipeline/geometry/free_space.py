@@ -1,7 +1,5 @@
 """The floor of rooms as a raster: where a round robot can stand, and which of it hangs together through the openings."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

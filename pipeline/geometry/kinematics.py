@@ -3,8 +3,6 @@
 Everything is in the object frame (origin bottom centre of the box at rest, front -Y). Positive motion opens.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Protocol
 

@@ -4,8 +4,6 @@ Rooms are shown one by one, but to an engine a storey has one floor, a ceiling p
 wall between them. A window is wall: it does not open, and nothing stands in it. Solids may overlap: nothing of them moves.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np

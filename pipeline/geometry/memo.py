@@ -1,7 +1,5 @@
 """What is derived from an asset alone, computed once and kept while the asset is; from other things, while they are in use."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar

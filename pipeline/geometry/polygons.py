@@ -3,8 +3,6 @@
 A room polygon is (n, 2) [m], counter-clockwise, simple, not closed, not necessarily convex.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

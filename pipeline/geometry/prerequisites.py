@@ -1,7 +1,5 @@
 """Which joints of an asset wait for others: a drawer behind a door comes out once the door is open."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The robot for which floors must be walkable and handles in reach: an upright cylinder."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

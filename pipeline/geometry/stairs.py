@@ -5,8 +5,6 @@ opening, and steps of equal rise and equal share of the shaft's wall wind from l
 several rooms of a storey open to, that a leaf turns into, or whose outline is not convex, stays without steps: they would stand in the way.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import ceil
 from typing import Literal

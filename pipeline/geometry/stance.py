@@ -1,7 +1,5 @@
 """Where a robot can stand to take hold of a handle, clear of the part that it opens."""
 
-from __future__ import annotations
-
 import functools
 import math
 

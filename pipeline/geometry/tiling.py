@@ -1,7 +1,5 @@
 """Convex tilings and covers of plan polygons: rectangles where all edges are axis-parallel, merged triangles elsewhere."""
 
-from __future__ import annotations
-
 import numpy as np
 import shapely
 from numpy.typing import NDArray

@@ -3,8 +3,6 @@
 Everything is in world plan coordinates (x, y) [m]; z is measured from the floor of the storey.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal

@@ -4,8 +4,6 @@ An entry is a folder named after the asset and the digest of its file, beside a 
 bytes depend on besides (the code that writes, its libraries) names the folder above; the oldest of those go when there is too much.
 """
 
-from __future__ import annotations
-
 import fcntl
 import os
 import shutil

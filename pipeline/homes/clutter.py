@@ -1,7 +1,5 @@
 """Small things of a finished home: rugs, curtains, pictures and mirrors, and what lies on and in its furniture."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Mapping

@@ -3,8 +3,6 @@
 Each part is a row group of the tables, in the order of homes, so that who finishes some homes reads their rows only.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Iterable, Mapping

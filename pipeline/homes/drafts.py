@@ -1,7 +1,5 @@
 """First drafts as table rows and back: what stage `sample` hands to stage `postopt`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """A finished home as files: the USD stage, its MuJoCo overlay, the plan, the preview."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from pipeline.entities.asset import Asset

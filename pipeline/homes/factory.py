@@ -3,8 +3,6 @@
 A home is a function of (program, seed, index, weights).
 """
 
-from __future__ import annotations
-
 import functools
 import gc
 from collections.abc import Iterator, Mapping, Sequence

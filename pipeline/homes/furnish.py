@@ -1,7 +1,5 @@
 """One attempt at each of a batch of rooms: guided diffusion, then retrieval from both libraries."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """What was asked of a home's furniture beside what stands there."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

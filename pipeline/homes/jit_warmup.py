@@ -1,7 +1,5 @@
 """Compiles what making homes runs, into the cache beside the code."""
 
-from __future__ import annotations
-
 import multiprocessing
 from collections.abc import Callable
 from contextlib import suppress

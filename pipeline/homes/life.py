@@ -8,8 +8,6 @@
 The budgets are those of ShardSettings: tries of a room, plans of a home, CPU seconds of a home.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager

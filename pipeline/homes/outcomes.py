@@ -1,7 +1,5 @@
 """What becomes of a request: a home that ships, or an index that stays empty with its reason."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from pipeline.entities.home import Home

@@ -4,8 +4,6 @@ The layout model knows rooms that serve as one. A room of several is cut into pa
 open to its neighbours, and what is arranged and judged is the whole.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A request becomes a plan that the judge finds sound, and a job for each room that the layout model furnishes."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass

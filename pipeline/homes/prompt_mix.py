@@ -1,7 +1,5 @@
 """What a dataset is ordered to hold: a mix of prompts, read before the first home is made."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path

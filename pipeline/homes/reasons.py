@@ -1,7 +1,5 @@
 """Why something was left out, exchanged or tried again while homes were made: the reason codes of `rejects`."""
 
-from __future__ import annotations
-
 from pipeline.entities.reason import reasons
 
 REASONS = reasons("homes")

@@ -1,7 +1,5 @@
 """What the bytes of a home hang on beside its digests, and whether homes of a dataset come out the same here."""
 
-from __future__ import annotations
-
 import platform
 from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version

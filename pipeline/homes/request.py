@@ -1,7 +1,5 @@
 """What is asked of the factory: one home, or one room of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from pipeline.diffusion.context import CategoryBounds

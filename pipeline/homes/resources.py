@@ -1,7 +1,5 @@
 """What making homes needs: the layout model, the library, the settings; loaded once per process."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Poses are rounded before anything is derived from them, so that the last bits of a sum never reach a dataset."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Homes as table rows and back."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The numbers of home making that stand in params.yaml, and how the sections of a run are read together."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -4,8 +4,6 @@ A real home may have a closet behind a door of 45 cm. It is a home all the same:
 it, and that is said. Only where the robot is kept out of the larger part is the plan refused.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from pipeline import params

@@ -1,7 +1,5 @@
 """What must leave a home so that it can ship."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

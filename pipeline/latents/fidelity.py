@@ -1,7 +1,5 @@
 """How much of a shape survives: what the decoder makes of it, beside what two samples of one shape differ by."""
 
-from __future__ import annotations
-
 import torch
 
 from pipeline.latents.vae import PointVae, chamfer, kl_to_standard_normal

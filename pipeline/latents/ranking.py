@@ -1,7 +1,5 @@
 """How well latents tell shapes apart: a model, encoded from a second sample of its surface, must find itself."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The numbers of the shape encoder that stand in params.yaml."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

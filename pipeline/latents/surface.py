@@ -1,7 +1,5 @@
 """Surface samples: points spread evenly over an asset's visual meshes, centred and scaled by the largest side."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Training of the VAE: a loop that yields, so that the caller logs and stops."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The VAE on disk: safetensors, the settings in its header."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict
 from pathlib import Path

@@ -5,8 +5,6 @@ paper do, whatever the joints are. `joints`: the box around the asset and all th
 stands `swept`: the share of objects with a joint that touches something on its way, as the judge found it with prisms.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal
 

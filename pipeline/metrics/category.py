@@ -1,7 +1,5 @@
 """CKL: how far the frequencies of object categories are from the real ones."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import TypedDict

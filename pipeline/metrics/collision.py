@@ -4,8 +4,6 @@
 test vertices against watertight meshes; a chair under its table collides as a box and not as what it is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Uncertainty of what is counted and averaged. Every figure of a report carries its interval."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import TypedDict

@@ -3,8 +3,6 @@
 What the floor says is left out: real and made rooms share it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

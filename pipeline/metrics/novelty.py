@@ -5,8 +5,6 @@ after the middles of the rooms are laid over each other, in the best of four tur
 every thing that has no match; the mean over the larger room.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

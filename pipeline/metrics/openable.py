@@ -1,7 +1,5 @@
 """Openable objects per room, before and after: a guidance that blocks less by placing less has gained nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Furnished rooms, spoilt: what a metric must see, or its figure says nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType

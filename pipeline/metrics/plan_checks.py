@@ -1,7 +1,5 @@
 """Checks of a floor plan: how far each kind of constraint of a test case is met, in [0, 1]."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

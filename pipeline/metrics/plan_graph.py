@@ -1,7 +1,5 @@
 """The graph of a floor plan, read off its realised openings, and its matching with a ground-truth graph."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

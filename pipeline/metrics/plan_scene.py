@@ -1,7 +1,5 @@
 """A floor plan under the names of a test case: which rooms a selector means, what touches, joins and reaches what."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -12,8 +12,6 @@ its weighted benchmark score) leaves rules open, these hold:
 - numeric constraints lose credit linearly, to none at twice the tolerance.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

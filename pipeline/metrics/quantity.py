@@ -1,7 +1,5 @@
 """Object quantity control: SR(N), the share of rooms with exactly the number of objects that was asked for (paper eq.)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 from pipeline.metrics.intervals import Rate, rate

@@ -1,7 +1,5 @@
 """Reach: R_reach as the peers code it, and the share of openable objects that a robot can really stand at and open."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ Rates are shares of cases with 95 % Wilson intervals: the rules of `pipeline.met
 the training tables show. Counts are means per room with bootstrap intervals.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Rows of tables as the arrays that metrics need."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ Each rule yields one verdict for each case of a room, none where the room has no
 corpus; what a corpus says of its own is in `pipeline.relations`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
 

@@ -1,7 +1,5 @@
 """Two samples of rooms: whether a classifier tells them apart (SCA, .5 is best), and how far apart they are (FID, KID)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """FID, KID and SCA on plan views, for the features of any net; train against test beside it, and what harm does to it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 

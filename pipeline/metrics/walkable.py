@@ -4,8 +4,6 @@
 without a robot. `free` is the share of the floor that a round robot really covers, coming from the entrance.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

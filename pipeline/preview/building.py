@@ -1,7 +1,5 @@
 """The building as the top view shows it: patterned floors, walls cut through, windows in them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

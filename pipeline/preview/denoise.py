@@ -1,7 +1,5 @@
 """A denoiser for path-traced images: edge-avoiding à-trous wavelets (Dammertz et al. 2010), guided by albedo, normal and depth."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Room labels: type and area, placed where they hide least."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

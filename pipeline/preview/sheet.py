@@ -1,7 +1,5 @@
 """Contact sheets: many pictures on one, each with its caption."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from PIL import Image, ImageDraw

@@ -1,7 +1,5 @@
 """What a floor plan says in lines: door leaves and their arcs, how far drawers and doors of furniture reach, the entrance."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """The top view of a home: ceiling off, walls cut, doors with their swing, furniture shaded, rooms labelled."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 

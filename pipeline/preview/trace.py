@@ -1,7 +1,5 @@
 """Path-traced views by Mitsuba (an extra): ceiling off, some doors and drawers open, sky and a low sun."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A home as coloured triangles by finish, posed and without its ceilings: what a renderer needs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 

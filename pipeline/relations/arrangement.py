@@ -1,7 +1,5 @@
 """A furnished room as plain data: what relations are learnt from and metrics judge, whoever made it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple

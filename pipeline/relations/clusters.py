@@ -1,7 +1,5 @@
 """Clusters on a line: where the density of a sample has a valley, it falls into two."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

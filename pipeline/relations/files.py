@@ -1,7 +1,5 @@
 """Relations as JSON: small, stable, readable."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Relations from furnished rooms: every ordered pair of categories that often share a room, and every category's walls."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

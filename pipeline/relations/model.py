@@ -1,7 +1,5 @@
 """What is known of relations: pairs of categories, walls, and the questions that are put to them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """One way of standing at an anchor: a side and three spans; how far a member is from it, and where it would hold exactly."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

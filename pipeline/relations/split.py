@@ -1,7 +1,5 @@
 """The rooms of one split, as the training tables hold them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pyarrow.compute as pc

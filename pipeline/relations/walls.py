@@ -1,7 +1,5 @@
 """How things stand to the walls of their room: which side is at a wall, how near, how straight."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Assets as they are seen from straight above, and drawing them into a plan: turned and scaled, what is seen of them stays the same."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

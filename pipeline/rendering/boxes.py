@@ -1,7 +1,5 @@
 """Box meshes and box inertia: what doors, windows and stand-ins are made of."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -3,8 +3,6 @@
 Fitting frame: x along the opening, z up from the floor, y to the left of x; a door's origin is the foot of its hinge.
 """
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Shading normals: smooth across soft edges, flat across creases."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Colours of room types and of the building, linear RGB; what USD, previews and path-traced views agree on."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import TypeVar
 

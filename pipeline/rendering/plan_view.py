@@ -3,8 +3,6 @@
 What image metrics see: no textures and no light, so that drafts without models, real rooms and shipped ones are drawn alike.
 """
 
-from __future__ import annotations
-
 import colorsys
 import functools
 

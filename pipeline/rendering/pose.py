@@ -1,7 +1,5 @@
 """Triangles of posed assets: links moved by their joints, then placed in the world."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

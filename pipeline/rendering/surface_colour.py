@@ -1,7 +1,5 @@
 """The finish of an asset as a person sees it: the colour of most of its surface."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

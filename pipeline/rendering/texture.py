@@ -1,7 +1,5 @@
 """One colour per triangle: the material's, or where it has a texture the mean of the texels under the triangle."""
 
-from __future__ import annotations
-
 import functools
 import math
 from io import BytesIO

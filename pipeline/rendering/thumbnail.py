@@ -1,7 +1,5 @@
 """A small picture of one asset, from its front left, with its doors and drawers a little open."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The chapter of the layout models side by side: the peers' and the paper's, in this code."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

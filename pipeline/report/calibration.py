@@ -1,7 +1,5 @@
 """The chapter on the embedded corpus: every figure of metrics/calibration.json beside 3D-FRONT's."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

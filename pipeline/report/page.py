@@ -1,7 +1,5 @@
 """The report page: sections of text, tables and pictures, rendered to self-contained HTML."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape

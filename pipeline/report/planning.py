@@ -1,7 +1,5 @@
 """The bars of the floor plans: what was measured beside the paper's and the peers' figures, each with the command that measures it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The plots of the report, drawn by matplotlib into PNG bytes. Same figures, same bytes."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The chapter of the report that puts made rooms beside real ones."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

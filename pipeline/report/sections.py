@@ -1,7 +1,5 @@
 """The chapters of the report, from the figures of metrics.json."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Few boxes instead of many: what an asset's joints sweep, merged where merging adds the least volume."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

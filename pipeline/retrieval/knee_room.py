@@ -1,7 +1,5 @@
 """Can one sit at a desk whose drawers all open? A seat goes below what opens, beside it, or stands close behind it when it is drawn out."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """A retrieved asset is rarely as large as what was asked for: what stands flush with it is moved out of it."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

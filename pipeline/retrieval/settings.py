@@ -1,7 +1,5 @@
 """The numbers of retrieval that stand in params.yaml."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """One taste a home: a style is drawn for the home, finishes for each room, and sets are of one model."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 

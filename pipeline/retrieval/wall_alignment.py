@@ -1,7 +1,5 @@
 """A retrieved asset is rarely as large as what was asked for: keep the side that stood at a wall where it was, and all of it in the room."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

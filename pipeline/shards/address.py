@@ -4,8 +4,6 @@ An object store has no rename, but an object is there whole or not at all: who r
 was killed, here or on another machine, goes on with the shards that are committed there.
 """
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager

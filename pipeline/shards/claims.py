@@ -5,8 +5,6 @@ Who is gone (its file removed, its process dead, or its file unchanged for a whi
 same name, which again only one can create. Claims save work that is done twice; that what is written stays whole does not rest on them.
 """
 
-from __future__ import annotations
-
 import itertools
 import json
 import os

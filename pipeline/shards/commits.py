@@ -1,7 +1,5 @@
 """Commit files: the digest, length and number of rows of everything in a shard, or in the asset library."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterator, Mapping

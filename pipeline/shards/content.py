@@ -1,7 +1,5 @@
 """What a shard holds, in memory: rows by table, files by path; gathered from the homes in it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any

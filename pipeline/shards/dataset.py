@@ -5,8 +5,6 @@ Workers return homes, which their command puts aside as parts until a shard has 
 that they seldom do. What a killed run leaves behind is told apart by one question: is there a commit file?
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import shutil

@@ -1,7 +1,5 @@
 """Folders and names on disk: flushed, linked, put."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from pathlib import Path

@@ -11,8 +11,6 @@ commits/assets.json               the same for the library
 .staging/<token>/                 what a command is writing
 """
 
-from __future__ import annotations
-
 from pathlib import PurePosixPath
 
 from pipeline.errors import ContentError

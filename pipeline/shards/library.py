@@ -4,8 +4,6 @@ It grows with the shards: a shard's assets are there before the shard is. When a
 to the last byte, described by its tables, and committed.
 """
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What each home of a dataset is asked to be: a list of prompts that is gone through in turn, or a mix drawn by weight."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

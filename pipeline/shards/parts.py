@@ -4,8 +4,6 @@ A part is one home, or the rejects of one that stays empty: a folder with its ro
 commit file. It gets its name when all of that is there, and once it has it, it is never written again.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import shutil

@@ -1,7 +1,5 @@
 """commits/dataset.json: written when a dataset is whole; vouches for the header, for every commit file, and for itself."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path

@@ -3,8 +3,6 @@
 Each task has a budget. What a file costs that exceeds it is that file: its process goes on, or another takes its place.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What the reading of one file may cost: processor time and memory, held by the operating system, whatever the file makes a reader do."""
 
-from __future__ import annotations
-
 import contextlib
 import signal
 import sys
@@ -11,7 +9,7 @@ from pathlib import Path
 from typing import NoReturn
 
 MIB = 1 << 20
-AGAIN = 2  # times its seconds after which code that hears no signal ends with its process
+AGAIN = 2  # times its seconds, and a second more, after which code that hears no signal ends with its process
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +37,7 @@ def enforce(budget: Budget) -> Iterator[None]:
 
     before = {kind: resource.getrlimit(kind) for kind in (resource.RLIMIT_AS, resource.RLIMIT_CPU, resource.RLIMIT_CORE)}
     usage = resource.getrusage(resource.RUSAGE_SELF)
-    last = int(usage.ru_utime + usage.ru_stime + AGAIN * budget.seconds) + 1
+    last = int(usage.ru_utime + usage.ru_stime + AGAIN * budget.seconds) + 2
     wanted = {resource.RLIMIT_CPU: last, resource.RLIMIT_CORE: 0}
     if size := _address_space():
         wanted[resource.RLIMIT_AS] = size + budget.mebibytes * MIB

@@ -1,7 +1,5 @@
 """Sizes of furniture by category, as log-normal distributions."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass

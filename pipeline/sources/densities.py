@@ -1,7 +1,5 @@
 """Densities [kg/m3] by which masses are estimated: of the material that a model names, else typical of its kind."""
 
-from __future__ import annotations
-
 from pipeline import taxonomy
 from pipeline.card import cards
 

@@ -1,7 +1,5 @@
 """Folders of data: those that have to be there, and those that lie near the one that a user names."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Rows of the training tables as one house gives them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 

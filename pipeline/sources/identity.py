@@ -1,7 +1,5 @@
 """Ids and splits of what comes from a source: functions of its own id alone."""
 
-from __future__ import annotations
-
 import re
 
 from pipeline.seeds import key

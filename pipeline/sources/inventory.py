@@ -4,8 +4,6 @@ A CSV file with a header and a line per file: path (relative to the source's fol
 time of the last change in nanoseconds. Sorted by path, so that two of them can be compared line by line.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import os

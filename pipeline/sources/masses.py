@@ -4,8 +4,6 @@ An estimate is no better than the mesh: one that is a shell weighs too little, o
 ranges on the cards are wide: an empty cabinet, a plant with its pot.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from pipeline.card import cards

@@ -1,7 +1,5 @@
 """The datasets that can be read, and which of them lie in a folder."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Settings of the stage `preprocess` (section `preprocess` of params.yaml)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal

@@ -1,7 +1,5 @@
 """What a dataset has to offer to be read: one folder of code with a `Source`, named in `registry`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The training tables as houses fill them: rows go to disk, counts stay, so that memory is flat over thousands of houses."""
 
-from __future__ import annotations
-
 import contextlib
 from collections import Counter
 from collections.abc import Iterable, Iterator

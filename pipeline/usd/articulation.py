@@ -3,8 +3,6 @@
 Small things are bodies of their own: they rest by gravity on what they stand on, and what opens of them moves along.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What every stage of ours must satisfy, checked on the composed stage."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -4,8 +4,6 @@ Four points hold one thing on another in MuJoCo, and Newton, which asks it, may 
 of half a millimetre then stood on three corners, and tipped by five degrees.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A home's stage: the building, and a reference for every placed object."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

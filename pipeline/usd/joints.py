@@ -1,7 +1,5 @@
 """Joints: fixed to the asset's own Xform, prismatic in metres, revolute in degrees; closed is 0."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

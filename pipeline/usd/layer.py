@@ -1,7 +1,5 @@
 """Layers, prims, attributes: the small vocabulary that the converters are written in."""
 
-from __future__ import annotations
-
 import os
 import re
 import tempfile

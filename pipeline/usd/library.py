@@ -1,7 +1,5 @@
 """The asset library: a folder per asset with interface, payload, MuJoCo overlay, textures and thumbnail."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 from types import MappingProxyType

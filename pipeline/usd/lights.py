@@ -1,7 +1,5 @@
 """Lights: a dome for the sky, a flat lamp under every ceiling."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Materials: UsdPreviewSurface and physics in one prim, because some engines read only the all-purpose binding."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Meshes: triangles with their extent and normals, smooth where a surface is curved, texture coordinates; boxes."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ MuJoCo's decoder takes any prim with an articulation root for a body and drops j
 fixed to its own Xform would float there. The overlays say the same thing in its words; other engines never see them.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from pxr import Sdf, Vt

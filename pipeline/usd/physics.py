@@ -1,7 +1,5 @@
 """Bodies, masses, colliders: UsdPhysics, and what an engine has to be told in its own words."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

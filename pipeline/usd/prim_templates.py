@@ -3,8 +3,6 @@
 Writing through Sdf costs some ten microseconds an attribute, and a home has four thousand; its text is read in one go.
 """
 
-from __future__ import annotations
-
 import functools
 import json
 from collections.abc import Callable, Iterable, Sequence

@@ -4,8 +4,6 @@ Nothing here needs a drive's largest force, which PhysX does not keep to in arti
 door half open there. What gravity would pull open is held by friction, which PhysX, Newton and MuJoCo read alike.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

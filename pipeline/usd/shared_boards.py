@@ -4,8 +4,6 @@ A library's asset has all of its boards. In a home, whoever reaches into a cupbo
 BESIDE behind it, as a chest's sides are its drawers' own. Above OVER nobody feels anything; what lies there keeps what it lies on.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The building: floors, ceilings, wall solids, visible wall faces, doors that turn, windows with glass."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple

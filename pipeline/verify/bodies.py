@@ -1,7 +1,5 @@
 """The home as prisms in the world: one group per placement."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

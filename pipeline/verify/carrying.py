@@ -1,7 +1,5 @@
 """What carries what: things that stand on or in an object, on which of its links, and where they go when that link slides out."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The certificate of a home: per joint, object and room what works, and the figures that the tables carry."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

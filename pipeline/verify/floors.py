@@ -1,7 +1,5 @@
 """Floors: what of each room a robot can walk on, and how it hangs together with the entrance."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pipeline import taxonomy

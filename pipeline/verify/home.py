@@ -1,7 +1,5 @@
 """The judge's one entry: a home in, its certificate out."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from pipeline import taxonomy

@@ -1,7 +1,5 @@
 """Joints: how far each one opens before it touches something, and where a robot can stand to open it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

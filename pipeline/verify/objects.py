@@ -1,7 +1,5 @@
 """Objects at rest: in each other, out of their rooms, floating."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

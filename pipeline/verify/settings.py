@@ -1,7 +1,5 @@
 """What the judge holds homes to."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from pipeline.geometry.robot import Robot

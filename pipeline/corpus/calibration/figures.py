@@ -1,7 +1,5 @@
 """The calibration table: every figure of the corpus beside the reference, its interval, and whether it is met."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Writes the calibration: metrics/calibration.json, plots/classes.csv, a line on the terminal."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Counts one house of the corpus as the reference was counted on real files: rooms, objects, relations, defects."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence

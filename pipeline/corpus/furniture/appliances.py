@@ -1,7 +1,5 @@
 """Appliances: refrigerator, oven, dishwasher, microwave, washing machine."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Assembly: a catalogue model becomes a shape of its exact size, by the function that the card of its category names."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 

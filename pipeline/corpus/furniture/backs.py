@@ -1,7 +1,5 @@
 """Backs of chairs: slats, ladders, panels, splats, spindles, cane, pads. Made upright, then leaned. Lengths in metres."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bathroom fixtures: toilet, bathtub, shower."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Beds for one and two: panel, padded, buttoned, slatted, metal and platform beds. The head is at the back (+y)."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

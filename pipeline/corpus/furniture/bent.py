@@ -3,8 +3,6 @@
 Each bend is a chain of straight pieces whose ends are mitred, so that neighbours touch in a plane and none enters another.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Casework: hollow carcasses of panels, cut into columns of cells that hold drawers, doors or open shelves."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

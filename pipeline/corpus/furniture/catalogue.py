@@ -1,7 +1,5 @@
 """The catalogue: which models there are. Cheap: ids, categories and sizes need no mesh."""
 
-from __future__ import annotations
-
 import functools
 import uuid
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Containers that open: bins and boxes."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

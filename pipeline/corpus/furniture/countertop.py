@@ -1,7 +1,5 @@
 """What stands on a worktop: toaster, coffee machine, cooking pot."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """Desks and dressing tables."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case

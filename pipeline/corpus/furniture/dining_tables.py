@@ -1,7 +1,5 @@
 """Dining tables and bars, and the parts that all tables share: tops, aprons, feet. Lengths in metres."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Room doors as pieces of furniture: a frame, a leaf, and a lever handle on either side."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Electronics on desks and tables: laptop, remote control, telephone, camera, keyboard, printer."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

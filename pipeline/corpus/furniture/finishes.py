@@ -1,7 +1,5 @@
 """Finishes: colours and surfaces of a model, chosen by style. Colours are linear RGB."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeVar

@@ -1,7 +1,5 @@
 """Fronts that move: hinged and sliding doors, drawers, lids, dials and buttons, with their handles. Fronts look towards -Y."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Literal

@@ -1,7 +1,5 @@
 """What people leave about: frames, candles, trays, bottles, jars, kettles, toys, herbs, televisions, coat hooks."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns

@@ -1,7 +1,5 @@
 """Intervals and points in the plane: what solids are cut from. Lengths in metres."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """Children's beds: with rails, bunks and cars. The wall is at the back (+y)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pipeline.corpus.furniture.beds import bedding

@@ -1,7 +1,5 @@
 """Kitchen units and bathroom vanities: base and wall cabinets, counters with a sink bowl and tap."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Floor, wall and table lamps. The origin is the bottom of the box, as of all objects. Lengths in metres."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Legs: twenty forms that stand under a corner, at a side, or in the middle of a seat, a case or a table top. Lengths in metres."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where things can lie on and in a model: the level tops of its solids, boards inside included."""
 
-from __future__ import annotations
-
 import functools
 from dataclasses import dataclass
 

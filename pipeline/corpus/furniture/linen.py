@@ -1,7 +1,5 @@
 """Cloth of baths and windows: towels hung and folded, throws, bath mats, blinds; and the holder of a paper roll."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

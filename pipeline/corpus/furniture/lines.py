@@ -1,7 +1,5 @@
 """Product lines: for each category how many models it has, and in which forms they come, from its card."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Links of an articulated model as PartNet-Mobility and GAPartNet cut it, in the normalised mesh frame."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

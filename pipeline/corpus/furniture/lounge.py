@@ -1,7 +1,5 @@
 """Easy chairs: framed, winged, swivelling, tubs, cane ones. The front is -y. Lengths in metres."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Procedural patterns: tones from 0 to 1 over a surface at real-world scale. Wood's grain runs along the image's rows (v)."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable, Mapping

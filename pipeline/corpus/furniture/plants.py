@@ -1,7 +1,5 @@
 """House plants: leaves of several shapes on stems in pots. Lengths in metres."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """Chairs at tables, and Chinese armchairs. The front is -y. Lengths in metres."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Lamp shades: drums, cones, domes, bells, pleats, globes, paper balls, lanterns, cages, cane. Lengths in metres."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """Shapes: pieces of convex solids on a base and on movers, before they become an asset or files."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal

@@ -1,7 +1,5 @@
 """Bookcases and open shelves, with books on them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Coffee, side and end tables. Lengths in metres."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sizes of models: skewed distributions per category and axis, drawn in strata so that few draws keep mean and spread."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Sofas, armchairs, corner sofas, chaises and bean bags. The front is -y. Lengths in metres."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

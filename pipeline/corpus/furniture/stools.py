@@ -1,7 +1,5 @@
 """Bar stools, dressing stools, benches, ottomans and poufs. The front is -y. Lengths in metres."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

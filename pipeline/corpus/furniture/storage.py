@@ -1,7 +1,5 @@
 """Storage furniture: nightstands, wardrobes, chests, sideboards, TV stands, cabinets for wine, shoes and children."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Small things that stand on furniture: cups, plates, bowls, vases, books, baskets."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

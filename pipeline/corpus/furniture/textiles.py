@@ -1,7 +1,5 @@
 """Rugs, curtains and loose pillows."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Upholstery: seat and back cushions with piping or tufts, bolsters, throw pillows, duvets. Lengths in metres."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

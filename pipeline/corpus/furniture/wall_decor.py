@@ -1,7 +1,5 @@
 """What hangs on walls: pictures, mirrors, clocks. The back is at the wall (+y)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pipeline.corpus.furniture.bent import turns

@@ -1,7 +1,5 @@
 """Solids as Wavefront OBJ and MTL text, in the y-up frame of 3D-FRONT and of PartNet-Mobility's meshes."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The moves that all room types share: a piece against a wall, beside another, a chair at a desk, a lamp overhead."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """Bedrooms and children's rooms: a bed with its head to a wall, and everything around it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

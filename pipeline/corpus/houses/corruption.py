@@ -3,8 +3,6 @@
 `disturb` changes the furniture itself, `litter` says what else a file holds, `in_centimetres` which models have the wrong unit.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Dining: a table with chairs that face it square on, and a lamp above it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

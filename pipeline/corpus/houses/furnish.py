@@ -1,7 +1,5 @@
 """Furnishes the rooms of a plan: several tries a room, the one kept in which a robot gets around best."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One house from (seed, index, stock)."""
 
-from __future__ import annotations
-
 import uuid
 from collections import Counter
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Kitchens: a run of base units along a wall, appliances in it, the fridge at its end, wall units above."""
 
-from __future__ import annotations
-
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger, free_front
 from pipeline.corpus.houses.room_occupancy import ahead, on_side

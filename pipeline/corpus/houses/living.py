@@ -1,7 +1,5 @@
 """Living rooms: a sofa that looks at the TV, a coffee table between them, seats around it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """An apartment's plan from one generator: the factory's own planner on a program in 3D-FRONT's types of rooms."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

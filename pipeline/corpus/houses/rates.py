@@ -1,7 +1,5 @@
 """The chances of manifests/calibration/rates.yaml."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a house of the embedded corpus is: a plan, the furniture in it, and which rooms were left empty."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What rooms a house has, how large they are meant to be, and what joins them: the program that its plan is solved from."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -3,8 +3,6 @@
 Everything that stands is kept as an axis-aligned box in plan with a range of heights; oblique pieces by their bounds.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Which rooms of a house are furnished as 3D-FRONT's are: their number in the observed shares, their types likewise."""
 
-from __future__ import annotations
-
 import functools
 from collections import Counter
 from collections.abc import Mapping

@@ -3,8 +3,6 @@
 Everything in our frame [m, Z up]; a quad's corners run counter-clockwise seen from where it is looked at.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Bathrooms, halls, studies, balconies, utility and storage rooms."""
 
-from __future__ import annotations
-
 from pipeline.corpus.houses.arranger import Arranger
 
 

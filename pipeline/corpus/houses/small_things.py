@@ -4,8 +4,6 @@ A thing that lies on furniture lies on a level surface of the support's geometry
 no other thing and nothing else in the room.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Mapping, Sequence

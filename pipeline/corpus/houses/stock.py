@@ -1,7 +1,5 @@
 """The furniture that houses are furnished from, by category."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Callable, Sequence

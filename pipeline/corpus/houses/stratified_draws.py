@@ -4,8 +4,6 @@ A room is one of `total` of its kind in its block. For every decision the unit i
 one each, in an order of the decision's own: a Latin hypercube. So a few hundred houses have the shares that were asked for.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Where one can walk in a furnished room, on a grid: whether all doors are joined, and what it can get near."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

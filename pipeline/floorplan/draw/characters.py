@@ -1,7 +1,5 @@
 """A plan in box-drawing characters, for terminals."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

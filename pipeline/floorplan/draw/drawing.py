@@ -1,7 +1,5 @@
 """Drawings of a plan: SVG text, and a PIL image, of the same marks."""
 
-from __future__ import annotations
-
 import io
 import math
 from html import escape

@@ -1,7 +1,5 @@
 """What a drawing of a plan consists of, in metres: filled areas, lines and words, one storey beside the other."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

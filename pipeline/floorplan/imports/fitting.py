@@ -1,7 +1,5 @@
 """Openings of a sketch put into its walls: each on a stretch that is long enough, none upon another, leaves that can swing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 

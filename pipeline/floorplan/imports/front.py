@@ -1,7 +1,5 @@
 """The rooms of a 3D-FRONT house as a sketch: floors, doors and windows as `pipeline.sources` reads them, without the furniture."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A plan in our own JSON, whole as `sfgen plan --json` writes it or in the short form, as a sketch."""
 
-from __future__ import annotations
-
 import json
 from typing import Annotated, Literal
 

@@ -6,8 +6,6 @@ boundingBox} lie in `wall0`, whose `polygon` has its two floor corners first; x 
 An outside door has the same room twice, or an exterior wall. A wall with `empty` is none: the rooms on both sides are open.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

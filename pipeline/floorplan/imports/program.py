@@ -1,7 +1,5 @@
 """The program that a given plan is: every room with its area, every opening as a link; so that wishes have something to hang on."""
 
-from __future__ import annotations
-
 from pipeline.entities.plan import Plan
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Link, Range, RoomReq, Shell
 

@@ -1,7 +1,5 @@
 """Rings of corners as room polygons: one unit, counter-clockwise, nothing twice, nothing crossing, no two rooms in one place."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

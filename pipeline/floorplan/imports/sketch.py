@@ -1,7 +1,5 @@
 """A plan as its file has it: rings and openings that nobody has checked yet, and the repairs that are made on the way."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 from typing import Literal

@@ -1,7 +1,5 @@
 """Floors that reach into the walls under doors, as those of scanned and modelled houses do: cut back, and walls where a door asks for one."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator

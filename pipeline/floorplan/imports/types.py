@@ -1,7 +1,5 @@
 """What others call rooms: 3D-FRONT, ProcTHOR and people, as one of our room types and a role."""
 
-from __future__ import annotations
-
 import difflib
 import re
 import typing

@@ -1,7 +1,5 @@
 """The walls between rooms as their polygons show them: straight stretches with the same rooms on both sides."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

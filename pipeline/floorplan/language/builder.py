@@ -1,7 +1,5 @@
 """What was read → the program: its rooms, amounts, storeys, outline, style, and evidence."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """One sentence while it is read: what its words so far are about, who stands in front of a relation and behind it, sizes against each other, storeys."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable
 

@@ -4,8 +4,6 @@ They are read before the rooms are, in all languages at once, and taken out of t
 room a wish means is settled afterwards (`attach`), when the rooms and their places in the prompt are known.
 """
 
-from __future__ import annotations
-
 import bisect
 import functools
 import itertools

@@ -6,8 +6,6 @@ A reply that does not validate is sent back with the faults at most twice; then,
 the caller falls back to the built-in parser.
 """
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import http.client

@@ -1,7 +1,5 @@
 """From characters to marks: the phrases of a prompt with their meaning, numbers and amounts put together."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 

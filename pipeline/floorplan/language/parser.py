@@ -1,7 +1,5 @@
 """Prompt → FloorProgram, without network and always the same: characters → marks → phrases → rooms and facts → program; then the rooms that wishes for furniture are for."""
 
-from __future__ import annotations
-
 import bisect
 import itertools
 import re

@@ -1,7 +1,5 @@
 """From marks to the elements of sentences: noun phrases with all that stands in front of and behind a room's name, what lies between them, and what is ruled out."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any

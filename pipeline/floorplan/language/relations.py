@@ -1,7 +1,5 @@
 """What the words for relations say: who is joined to whom, who has what, how one gets from room to room, sizes against each other."""
 
-from __future__ import annotations
-
 from pipeline.floorplan.language.clause import LIGHT, LISTING, Clause, ids_of, named_rooms
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.phrases import Element

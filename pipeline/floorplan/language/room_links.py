@@ -1,7 +1,5 @@
 """Facts about rooms → links, prohibitions and relations between them."""
 
-from __future__ import annotations
-
 import graphlib
 import itertools
 from collections.abc import Iterable, Sequence

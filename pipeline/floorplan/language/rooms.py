@@ -1,7 +1,5 @@
 """The rooms of a prompt and the facts about them, and which rooms phrases name: those that numbers and articles introduce, and those named before."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass, field
 

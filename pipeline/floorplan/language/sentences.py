@@ -1,7 +1,5 @@
 """Reads sentences from left to right: what each kind of element says about the rooms around it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Repair of typing errors against a closed vocabulary, and which of the languages that have a lexicon a prompt is written in."""
 
-from __future__ import annotations
-
 import functools
 import heapq
 import re

@@ -1,7 +1,5 @@
 """Characters and words of a prompt."""
 
-from __future__ import annotations
-
 import functools
 import re
 import unicodedata

@@ -4,8 +4,6 @@ Mean areas [m2] are those usual for the type; the links are what makes it: what 
 a room, where the bathroom hangs.
 """
 
-from __future__ import annotations
-
 from pipeline.floorplan.program.floor_program import FloorProgram, Forbid
 from pipeline.floorplan.program.program_sketch import Sketch
 

@@ -1,7 +1,5 @@
 """Target areas: what is stated holds, the rest follows defaults, relations between rooms and the total."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """What nobody said and a default filled in, in words: for the terminal and for the plan's JSON."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import fill
 

@@ -1,7 +1,5 @@
 """From what was said to what can be built: one entry per room, levels, links, entrance and areas filled by documented defaults."""
 
-from __future__ import annotations
-
 from pipeline.floorplan.program.areas import with_areas
 from pipeline.floorplan.program.consistency import names, reach, storeys
 from pipeline.floorplan.program.distance import distances, nearness

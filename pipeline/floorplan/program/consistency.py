@@ -1,7 +1,5 @@
 """Is a completed program consistent? Contradictions and impossibilities are refused, naming the words that clash."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """Which rooms of a storey can lie at outside walls together, given what is joined: a planar graph with one vertex for the outside."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 
 from pipeline.floorplan.program.floor_program import Link

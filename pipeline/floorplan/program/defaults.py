@@ -1,7 +1,5 @@
 """Documented defaults: what is filled in when a request leaves it open. Those of each type of room stand in manifests/rooms.yaml."""
 
-from __future__ import annotations
-
 from pipeline import taxonomy
 
 DEFAULTS = taxonomy.load().types

@@ -1,7 +1,5 @@
 """A program in one English sentence: what the scenes table says where nobody wrote a prompt."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 from pipeline.floorplan.program.defaults import OUTSIDE

@@ -1,7 +1,5 @@
 """How many openings lie between rooms: `hops` relations, and which of them a set of links breaks."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """FloorProgram: the typed, versioned request that language is turned into and floor plans are solved from."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field

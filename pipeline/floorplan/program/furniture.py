@@ -1,7 +1,5 @@
 """Wishes for furniture: which categories and groups there are, where they can stand, and which wishes no room can meet."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

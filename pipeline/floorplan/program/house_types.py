@@ -1,7 +1,5 @@
 """Plan types of houses on two storeys, with stairs from a hall below to a landing above."""
 
-from __future__ import annotations
-
 from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.program.program_sketch import Sketch
 

@@ -1,7 +1,5 @@
 """The graph of links: selectors resolved to rooms, and what nobody stated filled in until every room can be reached."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 
 from pipeline.floorplan.program.defaults import DEFAULTS, HUBS

@@ -3,8 +3,6 @@
 The types stand in `apartment_types.py` (one storey) and `house_types.py` (two); section `prior` of params.yaml weighs them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """A program of the prior in the making: rooms with drawn areas, links, and the odds that decide between them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Corners of the outline cut at 45 degrees, where no opening stands in the way and no room becomes too small."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Iterator
 from typing import NamedTuple

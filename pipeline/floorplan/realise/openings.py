@@ -4,8 +4,6 @@ A door stands near a corner of the room that it opens into, hinged there, so tha
 Leaves sweep free floor: no other leaf's sweep, no other opening, no wall. Nothing is opened that was not asked for.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

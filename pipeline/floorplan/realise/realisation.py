@@ -1,7 +1,5 @@
 """Grids → plan: walls leave the raster, rooms get their inner faces, stretches of wall their openings."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from shapely import Polygon

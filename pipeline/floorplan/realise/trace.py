@@ -1,7 +1,5 @@
 """From cells to polygons: the walls' centre lines, and the rooms' inner faces beside them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ Every maximal connected straight wall is one line with one coordinate. A room's 
 sides; a few bounded, regularised least-squares steps bring all areas near their targets while no wall crosses another.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

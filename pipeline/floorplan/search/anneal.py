@@ -1,7 +1,5 @@
 """Simulated annealing of a plan on the grid: wall shifts, jogs and swaps, geometric cooling, the best state kept."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

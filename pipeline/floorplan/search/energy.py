@@ -6,8 +6,6 @@ set of weights serves homes of any size. Each term is a pure function of the pla
 except for `alignment`.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ A plan is an integer array (rows, columns) of room indices with a border of `n`,
 cells; row and column are y and x. One pass over the grid's vertices finds areas, walls, corners and common walls of all rooms.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a layout of rectangles, the leaves of a slicing tree, is worth. Units: cells of the grid."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ side, `H` one above the other. Areas are met by construction, so the search is o
 Units: cells of the grid.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One storey's request in numbers, as the compiled searches take it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

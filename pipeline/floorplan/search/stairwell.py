@@ -1,7 +1,5 @@
 """The staircase on the grids of the storeys that share it: a rectangle that stands above itself."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pipeline.floorplan.search.grid import Labels

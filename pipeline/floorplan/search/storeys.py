@@ -1,7 +1,5 @@
 """One storey of a completed program as numbers for the searches."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The constructive starts of one storey: annealed slicing trees in the outline that all storeys share."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

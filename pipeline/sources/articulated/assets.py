@@ -1,7 +1,5 @@
 """Articulated shapes at a metric scale: one asset per category that an object may serve as."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 

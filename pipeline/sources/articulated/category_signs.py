@@ -1,7 +1,5 @@
 """What an articulated shape tells of its category beside its proportions: its doors and drawers, and how large they would be."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

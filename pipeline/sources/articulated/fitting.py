@@ -5,8 +5,6 @@ Real things are drawn open (laptops), lying or upright (a remote), along their d
 is refused.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 

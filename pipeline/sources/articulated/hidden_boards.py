@@ -3,8 +3,6 @@
 What a robot feels of a chest is its top, its fronts and their handles; whatever lies in a drawer is held by the drawer's boards.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """What becomes of a joint as it is written: limits, direction, rest, and screws of two joints."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

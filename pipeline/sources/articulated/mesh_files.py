@@ -1,7 +1,5 @@
 """The mesh files and primitives that the shapes of a URDF name, each file read once."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import PurePosixPath

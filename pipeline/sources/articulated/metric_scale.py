@@ -7,8 +7,6 @@ size is, how large its doors, drawers, handles and boards would be, which of the
 (`category_signs`), and how common the category is.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

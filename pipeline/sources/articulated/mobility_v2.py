@@ -4,8 +4,6 @@ A list of {id, parent, joint, name, jointData}; entry k is link_k of the URDF. D
 sliders; the direction is along the mesh's axes, as the URDF's axes are; b may be less than a.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Where the objects of an articulated source lie: folders of PartNet-Mobility or GAPartNet, and URDFs by themselves."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from dataclasses import dataclass

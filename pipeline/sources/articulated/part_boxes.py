@@ -4,8 +4,6 @@ z looks outwards, the way in which a part sets off when it opens, or its carrier
 opening sense, the long side of a handle, else level; y = z x x.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """GAPartNet part classes of links: from the annotation, else guessed from names, from the joint and from the shape."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Part classes and boxes that nobody has annotated, from shapes that stand upright with their front towards -y."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

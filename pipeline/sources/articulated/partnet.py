@@ -4,8 +4,6 @@ PartNet's world (z up, front -x) to ours (z up, front -y): (x, y, z) = (-Y, X, Z
 the mesh frame (y up, front +z) into that world, so mesh (x, y, z) ends as ours (x, -z, y).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

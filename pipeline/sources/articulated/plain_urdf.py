@@ -5,8 +5,6 @@ a frame. The robot's name is not believed, for it is often that of another piece
 file's name and those of its folders, else from the size.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The proportions of the objects of a model category: PartNet-Mobility has no metric scale, but many objects of a kind."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """URDF trees to articulated shapes: bodies of links that do not move against each other, joints between them, parts."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Iterable, Mapping

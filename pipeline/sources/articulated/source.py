@@ -1,7 +1,5 @@
 """PartNet-Mobility, GAPartNet and other people's URDFs as a source of models: a folder of objects, however deep."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath

@@ -4,8 +4,6 @@ Quirks that are read: commas between numbers, child before parent, limits withou
 limit, several visuals of one name, extra attributes and elements, rpy that is nearly a right angle.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ Frame of everything here: 3D-FRONT's (y up, metres, front +z); `translations` ar
 along the object's own axes; `angles` are yaws about +y in [-pi, pi).
 """
 
-from __future__ import annotations
-
 import io
 import json
 import zipfile

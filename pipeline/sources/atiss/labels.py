@@ -3,8 +3,6 @@
 Facts of the peers' published configurations: bedrooms have 21 classes, living and dining rooms 24, libraries 25.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

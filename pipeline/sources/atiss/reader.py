@@ -4,8 +4,6 @@ Rooms of one house lie in folders "<house>_<room>"; their floors are in the hous
 again. Where a 3D-FUTURE folder is at hand, the models that the jids name give category and asset.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """The peers' cached rooms as a source of houses."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Our training tables as the peers' cached rooms, so that ATISS and DiffuScene train on exactly our split."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -5,8 +5,6 @@ unit and the axis that is up (turned to z, as a URDF's frames have it); `collada
 out: lines, holes of polygons, skins, cameras, lights. A DTD, an entity or an external reference is refused.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from typing import Any

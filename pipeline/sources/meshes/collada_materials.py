@@ -1,7 +1,5 @@
 """Colours and textures of COLLADA files: material, effect, sampler, surface, image, each of which names the next."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

@@ -10,8 +10,6 @@ tolerance or the pieces are as many as they may be. (The loop is that of Lien an
 decomposition; the measure is that of a hand that does not get into a pocket, not the volume's.)
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import pairwise

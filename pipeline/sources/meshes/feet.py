@@ -1,7 +1,5 @@
 """Feet that hold the bar of a handle before its front: seen, not felt. A hand takes hold of the bar and comes behind it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

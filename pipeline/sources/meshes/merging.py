@@ -5,8 +5,6 @@ line, a bevelled edge and its panel. A slab, pieces between the same two planes 
 door, is merged where its hull has but shallow pockets, into which no finger goes. What is hollow stays hollow.
 """
 
-from __future__ import annotations
-
 import heapq
 from collections.abc import Sequence
 

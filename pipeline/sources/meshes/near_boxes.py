@@ -4,8 +4,6 @@ Eight corners instead of up to 64 make every contact cheaper, in any engine. The
 it adds lies along edges and at corners.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

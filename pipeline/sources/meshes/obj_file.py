@@ -4,8 +4,6 @@ Handled: triangles, quads and larger polygons (fanned), indices of every form (v
 doubled blanks, indents, comments, colours behind vertices, groups and materials. Left out: normals, curves, lines and points.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

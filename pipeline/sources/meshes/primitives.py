@@ -1,7 +1,5 @@
 """Boxes, cylinders and spheres of URDF as triangle meshes."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -4,8 +4,6 @@ A cabinet whose doors do not open has an inside that nobody sees or feels; neith
 carcass felt. Where nothing comes, a collider's surface may be where it likes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

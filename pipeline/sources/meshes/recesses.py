@@ -4,8 +4,6 @@ A box over the frame would be the frame's whole thickness off at the panel, one 
 of that off at both. Where a recess is so deep that neither would be within what a finger feels, the larger of the two is.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Rings of staves, of a cup or a basin, in as few sectors as may be."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rows of like things close beside each other, bottles on a rack, grates of a hob: a block each, for no hand comes between them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ that are broken, where 3D-FUTURE and PartNet need group and material, the file's
 and fans, which axis is up and the unit, and opens textures itself, wherever their paths lead.
 """
 
-from __future__ import annotations
-
 import io
 from dataclasses import dataclass
 from typing import Any

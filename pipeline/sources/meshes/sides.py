@@ -1,7 +1,5 @@
 """Hulls of no more sides than PhysX takes. What has more it makes anew, and a level top comes out lower or askew: a cup on a round table turned by 1.7 degrees."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull

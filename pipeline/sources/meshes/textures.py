@@ -1,7 +1,5 @@
 """Texture images: checked, bounded, and scaled down to a size that a dataset of thousands of assets can carry."""
 
-from __future__ import annotations
-
 import io
 
 from PIL import Image, UnidentifiedImageError

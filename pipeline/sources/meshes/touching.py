@@ -4,8 +4,6 @@ The measure is the way from the common hull's surface to the pieces as they were
 keeps its hollow, with fewer staves; bevels, beads and shallow frames go; a block that is closed all round becomes one piece.
 """
 
-from __future__ import annotations
-
 import heapq
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """OBJ groups as visual meshes of an asset, with their materials and textures."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

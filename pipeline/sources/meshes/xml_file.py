@@ -1,7 +1,5 @@
 """XML from strangers: no DTD, no entity, nothing fetched, not too many elements."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import defusedxml

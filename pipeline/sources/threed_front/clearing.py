@@ -5,8 +5,6 @@ and a filter loses what lies half outside. So a piece is moved before it is judg
 until nothing collides; here by the least translations that separate two boxes, walls first, the worst conflict next.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Room outlines from floor triangles (3D-FRONT format: floors come in pieces, with slivers and zero-area triangles)."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Furniture of a 3D-FRONT room as placed boxes, each kept or left out with a reason."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

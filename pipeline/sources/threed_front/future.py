@@ -1,7 +1,5 @@
 """3D-FUTURE models to assets: one folder with raw_model.obj, model.mtl and texture.png each, and model_info.json."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,8 +3,6 @@
 Most models are in metres; some dozens of the release are in centimetres, and nothing in their files says so.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One 3D-FRONT house file to rows of scenes, rooms, openings, objects and rejects."""
 
-from __future__ import annotations
-
 import functools
 import json
 from collections.abc import Mapping

@@ -3,8 +3,6 @@
 Frame of everything here: the file's own (y up, metres, front +z; plan coordinates are (x, z)).
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Mirror images of models: 3D-FRONT places some furniture with a negative scale, such as an L-shaped sofa of the other hand."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterable
 from pathlib import Path

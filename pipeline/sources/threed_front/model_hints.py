@@ -4,8 +4,6 @@ A model's own files say neither its unit nor, in a few thousand rooms of the rel
 scenes that use it do.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections import Counter

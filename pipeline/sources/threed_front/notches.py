@@ -1,7 +1,5 @@
 """What of its box a model fills, coarsely: an L-shaped sofa leaves a notch, a lamp's arc leaves room below it."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterable
 

@@ -4,8 +4,6 @@ File frame (y up, front +z) to ours (z up, front -y): (x, y, z) -> (x, -z, y). A
 yaw about our +z, for the change of frame is a rotation.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Which pieces of evidence are one opening of a 3D-FRONT house, and how wide it is: reveals from both rooms, frames, thresholds, leaves."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable, Sequence

@@ -1,7 +1,5 @@
 """The furniture of a 3D-FRONT house put into its rooms: each piece in the room in which it lies, or a reason why in none."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

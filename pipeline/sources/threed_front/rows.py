@@ -1,7 +1,5 @@
 """Rows of the training tables from what was read of a 3D-FRONT house."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

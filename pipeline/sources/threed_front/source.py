@@ -1,7 +1,5 @@
 """3D-FRONT and 3D-FUTURE as a source: houses in 3D-FRONT/, their furniture in 3D-FUTURE-model/ beside it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What stands on or in what: from the boxes of a room's objects, for scene files say nothing of it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ What the evidence gives (`opening_evidence`, `reveals`) is put between rooms: on
 within `reach` of the opening's centre.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
