@@ -188,15 +188,16 @@ def retrieve(
 
 
 def _apart(placements: Sequence[Placement], context: RoomContext, taxonomy: Taxonomy) -> list[Placement]:
-    """Return the placements, furniture on the floor moved out of its neighbours and of walls; seats are not: they belong under tables."""
+    """Return the placements, what stands on the floor or hangs on walls moved out of walls and of its neighbours; seats are not: they belong under tables."""
     apart = list(placements)
-    standing = [k for k, p in enumerate(placements) if (c := taxonomy.categories[p.category]).mount == "floor" and c.super not in SEATS]
-    if standing:
-        own = [placements[k] for k in standing]
-        position, yaws, sizes = (np.array([getattr(p, name) for p in own]) for name in ("position", "yaw", "size"))
-        centres = part(position[:, :2], yaws, sizes)
-        for k, p, centre in zip(standing, own, centres, strict=True):
-            apart[k] = replace(p, position=put_before_walls(np.array([*centre, p.position[2]]), p.yaw, p.size, context.polygon))
+    own = [
+        k for k, p in enumerate(placements) if (c := taxonomy.categories[p.category]).mount in ("floor", "wall") and c.super not in SEATS
+    ]
+    if own:
+        yaws, sizes = np.array([placements[k].yaw for k in own]), np.array([placements[k].size for k in own])
+        before = [put_before_walls(placements[k].position, placements[k].yaw, placements[k].size, context.polygon) for k in own]
+        for k, position in zip(own, part(np.array(before), yaws, sizes, context.polygon), strict=True):
+            apart[k] = replace(placements[k], position=position)
     return apart
 
 

@@ -27,7 +27,7 @@ def keep_at_walls(
     """
     moved = np.array(position, float)
     for extent, axis in enumerate(_axes(yaw)):
-        near = [abs(_gap(position[:2] + sign * axis * asked[extent] / 2, sign * axis, polygon, BEYOND)) < reach for sign in (1, -1)]
+        near = [abs(gap_to_wall(position[:2] + sign * axis * asked[extent] / 2, sign * axis, polygon, BEYOND)) < reach for sign in (1, -1)]
         moved[:2] += axis * (asked[extent] - size[extent]) / 2 * (int(near[0]) - int(near[1]))
     return moved
 
@@ -39,7 +39,7 @@ def put_before_walls(
     moved = np.array(position, float)
     for extent, axis in enumerate(_axes(yaw)):
         past = size[1 - extent] / 2 - OVERLAP
-        ahead, behind = (_gap(moved[:2] + sign * axis * size[extent] / 2, sign * axis, polygon, past) for sign in (1, -1))
+        ahead, behind = (gap_to_wall(moved[:2] + sign * axis * size[extent] / 2, sign * axis, polygon, past) for sign in (1, -1))
         if -REACH < min(ahead, behind) < 0.0 <= ahead + behind:
             moved[:2] += axis * (ahead - CLEAR if ahead < behind else CLEAR - behind)
     return moved
@@ -51,7 +51,7 @@ def _axes(yaw: float) -> NDArray[np.float64]:
 
 
 @compiled
-def _gap(point: NDArray[np.float64], outward: NDArray[np.float64], polygon: NDArray[np.float64], past: float) -> float:
+def gap_to_wall(point: NDArray[np.float64], outward: NDArray[np.float64], polygon: NDArray[np.float64], past: float) -> float:
     """Return how far [m] before the point the nearest wall is that faces `outward` squarely and ends no more than `past` beside it; infinite where none is.
 
     `polygon` (n, 2) goes counter-clockwise; the gap is negative where the point is beyond the wall.

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from pipeline.retrieval.neighbours import CLEAR, part
-from pipeline.retrieval.wall_alignment import put_before_walls
+from pipeline.retrieval.neighbours import part
+from pipeline.retrieval.wall_alignment import CLEAR, put_before_walls
 
 ROOM = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
 SIZE = np.array([1.0, 0.6, 0.9])
@@ -26,15 +26,24 @@ def test_what_is_in_the_room_or_far_beyond_a_wall_or_too_large_stays():
 
 
 def test_flush_neighbours_part_along_the_side_by_which_they_meet():
-    centres = np.array([[1.0, 1.0], [1.95, 1.1], [1.0, 1.55]])
-    yaws, sizes = np.array([0.0, np.pi, np.pi / 2]), np.array([[1.0, 0.6], [1.0, 0.6], [0.6, 1.0]])
-    moved = part(centres[:2], yaws[:2], sizes[:2])
-    np.testing.assert_allclose(moved, [[1.0 - 0.026, 1.0], [1.95 + 0.026, 1.1]], atol=1e-9)
-    moved = part(centres[[0, 2]], yaws[[0, 2]], sizes[[0, 2]])
-    np.testing.assert_allclose(moved[1] - moved[0], [0.0, 0.6 + CLEAR], atol=1e-9)
+    centres = np.array([[1.0, 1.0, 0.0], [1.95, 1.1, 0.0], [1.0, 1.55, 0.0]])
+    yaws, sizes = np.array([0.0, np.pi, np.pi / 2]), np.array([[1.0, 0.6, 0.9], [1.0, 0.6, 0.9], [0.6, 1.0, 0.9]])
+    moved = part(centres[:2], yaws[:2], sizes[:2], ROOM)
+    np.testing.assert_allclose(moved, [[1.0 - 0.026, 1.0, 0.0], [1.95 + 0.026, 1.1, 0.0]], atol=1e-9)
+    moved = part(centres[[0, 2]], yaws[[0, 2]], sizes[[0, 2]], ROOM)
+    np.testing.assert_allclose(moved[1] - moved[0], [0.0, 0.6 + CLEAR, 0.0], atol=1e-9)
 
 
-def test_what_reaches_deep_or_stands_askew_or_apart_stays():
-    for second, yaw in (([1.6, 1.0], 0.0), ([1.95, 1.0], 0.4), ([2.05, 1.0], 0.0)):
-        centres = np.array([[1.0, 1.0], second])
-        np.testing.assert_array_equal(part(centres, np.array([0.0, yaw]), np.array([[1.0, 0.6], [1.0, 0.6]])), centres)
+def test_who_stands_in_a_corner_stays_there_and_the_next_makes_room():
+    """A refrigerator at the wall, then two units: all three end flush, none in the wall."""
+    centres = np.array([[0.505, 2.6, 0.0], [1.45, 2.6, 0.0], [2.4, 2.6, 0.0]])
+    moved = part(centres, np.zeros(3), np.tile(SIZE, (3, 1)), ROOM)
+    assert moved[0, 0] - 0.5 >= CLEAR - 1e-9
+    assert np.all(np.diff(moved[:, 0]) >= 1.0 - 1e-4)
+    assert np.all(np.diff(moved[:, 0]) <= 1.0 + 2 * CLEAR)
+
+
+def test_what_reaches_deep_or_stands_askew_or_apart_or_above_stays():
+    for second, yaw in (([1.6, 1.0, 0.0], 0.0), ([1.95, 1.0, 0.0], 0.4), ([2.05, 1.0, 0.0], 0.0), ([1.95, 1.0, 1.4], 0.0)):
+        centres = np.array([[1.0, 1.0, 0.0], second])
+        np.testing.assert_array_equal(part(centres, np.array([0.0, yaw]), np.tile(SIZE, (2, 1)), ROOM), centres)
