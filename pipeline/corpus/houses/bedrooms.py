@@ -13,8 +13,8 @@ FARTHEST_TV = 1.2
 FOOT = 0.6
 SIDE = 0.5
 """Free floor at the foot and beside a bed [m]."""
-BESIDE = (0.6, 0.55, 0.45, 0.4)
-"""What is left beside a double bed, for nightstands and to get in: less, before the bed becomes a smaller one [m]."""
+BESIDE = ((0.52, 0.75), (0.47, 0.62), (0.42, 0.52), (0.4, 0.45))
+"""What is left beside a double bed, for nightstands and to get in, drawn from a range at each attempt: less, before the bed becomes a smaller one [m]."""
 SEATS = frozenset({"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa", "stool", "plant", "floor_lamp"})
 NIGHTSTANDS = {"none": 0, "one": 1, "two": 2}
 
@@ -86,7 +86,7 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
             others = [arranger.pick(category, width=width, depth=max(short - 0.4, 2.05)) for _ in range(2)]
             model = max([model, *(m for m in others if m)], key=lambda m: m.size[0] + 1.5 * m.size[1])
         space.blind = attempt >= 1 or arranger.chance(0.15)  # a headboard before a window: now and then
-        beside = BESIDE[min(attempt, len(BESIDE) - 1)] if attempt < 6 and category == "double_bed" else 0.0
+        beside = float(rng.uniform(*BESIDE[min(attempt, len(BESIDE) - 1)])) if attempt < 6 and category == "double_bed" else 0.0
         candidates = _bed_spots(arranger, model, beside)
         space.blind = False
         if candidates:
@@ -127,7 +127,7 @@ def _bed_spots(arranger: Arranger, model: Model, beside: float) -> list[tuple[fl
                     on_side(space, i, float(np.clip(middle, a + w / 2 + beside, b - w / 2 - beside)), d, gap),
                 )
             )
-            lean = w / 2 + max(beside, 0.02)
+            lean = w / 2 + (beside or 0.005 + abs(float(rng.normal(0, 0.02))))
             if room > w + 2 * beside + 0.4:
                 candidates += [(aside, on_side(space, i, a + lean, d, gap)), (aside, on_side(space, i, b - lean, d, gap))]
     return candidates
