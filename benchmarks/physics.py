@@ -3,7 +3,7 @@
     python benchmarks/physics.py [assets|homes] [--count N] [--dataset DIR] [--python PYTHON ...] [--engines physx,newton,...]
 
 Each engine runs in the first of the given Pythons that has it (this one is tried first), because they do not agree on their
-dependencies: `pip install "mujoco[usd]>=4"` here; `newton newton-usd-schemas "mujoco-warp~=3.17.0" "mujoco~=3.17.0" "usd-core<26.9"`, `ovphysx physx-usd-schemas
+dependencies: `pip install "mujoco[usd]>=4"` here; `newton newton-usd-schemas scipy "mujoco-warp~=3.17.0" "mujoco~=3.17.0" "usd-core<26.9"`, `ovphysx physx-usd-schemas
 newton-usd-schemas` and `usd-validation-nvidia "usd-core<26.9"` in a virtual environment of its own. An engine that no Python has is left out, and
 named. `assets` puts assets of data/assets, articulated ones and small things in turn, on a floor; `homes` takes those of DATASET.
 Pushes are those of engines/plan.py, the trial that of engines/trial.py. Everything found lies in build/physics/*.json.
