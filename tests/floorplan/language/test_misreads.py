@@ -34,3 +34,32 @@ def test_no_walls_between_rooms_leaves_them_open():
 def test_the_middle_of_a_home_is_told_to_be_unbuilt():
     said = "Piso de 80 m2 con dos dormitorios y el salón en el centro."
     assert any(said[s.start : s.end] == "en el centro" for s in parse(said).unbuilt)
+
+
+def storeys(prompt):
+    return sorted((room.type, room.level) for room in parse(prompt).rooms if room.stated)
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "apartamento de dos dormitorios con terraza",
+        "piso de dos habitaciones con un balcón",
+        "appartement de deux chambres avec balcon",
+        "an apartment of two bedrooms with a balcony",
+    ],
+)
+def test_what_a_home_of_so_many_bedrooms_has_is_not_each_bedrooms(prompt):
+    assert [r.type for r in parse(prompt).rooms].count("balcony") == 1
+
+
+def test_what_each_bedroom_has_is_each_bedrooms():
+    assert [r.type for r in parse("apartamento de dos dormitorios, cada uno con balcón").rooms].count("balcony") == 2
+
+
+def test_a_storey_in_front_of_one_room_is_that_rooms():
+    upstairs = [("bedroom", 1), ("bedroom", 1)]
+    assert storeys("a house with a downstairs toilet and two bedrooms upstairs") == [*upstairs, ("wc", 0)]
+    assert storeys("house with a downstairs loo and two bedrooms upstairs") == [*upstairs, ("wc", 0)]
+    assert storeys("a downstairs bedroom and two bedrooms upstairs") == [("bedroom", 0), *upstairs]
+    assert {("bathroom", 1), ("wc", 0)} <= set(storeys("a house with three bedrooms, a downstairs toilet and an upstairs bathroom"))
