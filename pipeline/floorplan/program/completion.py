@@ -104,13 +104,27 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
                 add("bedroom", "bed")
             if "bedroom" not in types:
                 add("studio_room", "studio")
-            elif not (program.select("bedroom")[3:] and "kitchen" in types):
+            else:
                 add("living_room", "living")
         if "kitchen" not in types and "cooking" not in functions:
             add("kitchen", "kitchen")
         if "bathroom" not in types:
             add("bathroom", "bath")
+        elif left := _without_bath(program):
+            levels = {r.level for r in left}
+            level = levels.pop() if len(levels) == 1 else None
+            rooms.append(RoomReq(id=_name("bath", rooms), type="bathroom", level=level, stated=False))
     return tuple(rooms)
+
+
+def _without_bath(program: FloorProgram) -> list[RoomReq]:
+    """Return the bedrooms from which one would get to a bathroom only through another's: each bathroom belongs to some bedroom alone, none to theirs."""
+    owned = [r for r in program.relations if r.kind == "ensuite"]
+    private = {bath.id for r in owned for bath in program.select(r.a)}
+    served = {bed.id for r in owned for bed in program.select(r.b or "")}
+    if any(bath.id not in private for bath in program.select("bathroom")):
+        return []
+    return [bed for bed in program.select("bedroom") if bed.id not in served]
 
 
 def _storeys(program: FloorProgram) -> tuple[RoomReq, ...]:

@@ -63,3 +63,25 @@ def test_a_storey_in_front_of_one_room_is_that_rooms():
     assert storeys("house with a downstairs loo and two bedrooms upstairs") == [*upstairs, ("wc", 0)]
     assert storeys("a downstairs bedroom and two bedrooms upstairs") == [("bedroom", 0), *upstairs]
     assert {("bathroom", 1), ("wc", 0)} <= set(storeys("a house with three bedrooms, a downstairs toilet and an upstairs bathroom"))
+
+
+@pytest.mark.parametrize("prompt", ["a 4 bedroom house with a big kitchen", "Haus mit fünf Schlafzimmern und einer großen Küche"])
+def test_a_home_of_many_bedrooms_has_a_living_room(prompt):
+    assert [r.type for r in parse(prompt).rooms].count("living_room") == 1
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "three bedroom flat where the master has its own bathroom and a walk in closet",
+        "a bungalow with three bedrooms, master with en-suite",
+        "Wohnung mit drei Schlafzimmern, das Elternschlafzimmer mit eigenem Bad",
+    ],
+)
+def test_nobody_gets_to_the_only_bathroom_through_the_bedroom_of_others(prompt):
+    program = parse(prompt)
+    types = {r.id: r.type for r in program.rooms}
+    baths = {r.id for r in program.rooms if r.type == "bathroom"}
+    assert len(baths) == 2
+    doors = {types[other] for k in program.links for bath in baths if k.opens and (other := k.beyond(bath))}
+    assert doors == {"bedroom", "hallway"}
