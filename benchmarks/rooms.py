@@ -136,7 +136,7 @@ def views_apart(
     from pipeline.experiments.realism import alike
     from pipeline.metrics.two_samples import frechet
 
-    real, floors = alike(np.random.default_rng(factory.seed), truth, list(train.values()))
+    real, floors = alike(np.random.default_rng(factory.seed), truth, list(train.values()), 1)[0]
     own = [jobs[room.name] for room in floors]
     sets = {"train": floors}
     as_real = {"train, finished": finished(factory, drafts_of_real(factory, own, [room.name for room in floors]))}

@@ -34,8 +34,8 @@ def main(dataset: Path, draws: int) -> None:
     figures: dict[str, list[float]] = {}
     for seed in range(draws):
         rng = np.random.default_rng(seed)
-        one, made = alike(rng, real, shipped)
-        floor = alike(rng, one, train)
+        one, made = alike(rng, real, shipped, 1)[0]
+        floor = alike(rng, one, train, 1)[0]
         for name, (own, other) in {"shipped": (one, made), "train": floor}.items():
             names = [room.name for room in own], [room.name for room in other]
             views = embed(own), embed(other)

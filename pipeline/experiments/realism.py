@@ -101,23 +101,28 @@ def pairs_of(rng: np.random.Generator, rooms: Rooms, generated: Rooms) -> list[t
     """Return the rooms and what is generated on the same floors; where these are others, DRAWS draws of rooms alike; none of fewer than two."""
     names = {room.name for room in generated}
     same = [room for room in rooms if room.name in names]
-    drawn = [(same, generated)] if same else [alike(rng, rooms, generated) for _ in range(DRAWS)]
+    drawn = [(same, generated)] if same else alike(rng, rooms, generated, DRAWS)
     return [pair for pair in drawn if len(pair[0]) > 1]
 
 
-def alike(rng: np.random.Generator, rooms: Sequence[Arrangement], others: Sequence[Arrangement]) -> tuple[Rooms, Rooms]:
-    """Draw pairs of a room and another of its type whose area is within AREA of its own, each room once.
+def alike(rng: np.random.Generator, rooms: Sequence[Arrangement], others: Sequence[Arrangement], draws: int) -> list[tuple[Rooms, Rooms]]:
+    """Draw so many times pairs of a room and another of its type whose area is within AREA of its own, each room once a draw.
 
     What is compared then is furniture, not which rooms homes have and how large.
     """
-    drawn: tuple[Rooms, Rooms] = ([], [])
-    free = {kind: [room for room in others if room.layout_type == kind] for kind in sorted({room.layout_type for room in rooms})}
-    for k in rng.permutation(len(rooms)):
-        candidates = free[rooms[k].layout_type]
-        near = [i for i, other in enumerate(candidates) if abs(np.log(other.area / rooms[k].area)) <= np.log1p(AREA)]
-        if near:
-            drawn[0].append(rooms[k])
-            drawn[1].append(candidates.pop(int(rng.choice(near))))
+    areas, kinds = np.log([other.area for other in others]), np.array([other.layout_type for other in others])
+    near = [np.flatnonzero((kinds == r.layout_type) & (np.abs(areas - np.log(r.area)) <= np.log1p(AREA))) for r in rooms]
+    drawn: list[tuple[Rooms, Rooms]] = []
+    for _ in range(draws):
+        free, pair = np.ones(len(others), bool), (Rooms(), Rooms())
+        for k in rng.permutation(len(rooms)):
+            candidates = near[k][free[near[k]]]
+            if len(candidates):
+                chosen = int(rng.choice(candidates))
+                free[chosen] = False
+                pair[0].append(rooms[k])
+                pair[1].append(others[chosen])
+        drawn.append(pair)
     return drawn
 
 

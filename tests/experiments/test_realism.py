@@ -87,12 +87,13 @@ def test_wcs_are_not_among_the_bathrooms_that_ship(root, homes, tmp_path):
 
 def test_rooms_of_like_type_and_area_are_compared(rooms):
     kitchens = [replace(room, layout_type="kitchen") for room in rooms.train[:7]]
-    own, other = alike(np.random.default_rng(0), [*rooms.real[:10], *kitchens], [*rooms.train[7:40], *kitchens[:3]])
+    [(own, other), again] = alike(np.random.default_rng(0), [*rooms.real[:10], *kitchens], [*rooms.train[7:40], *kitchens[:3]], 2)
+    assert len(again[0]) == len(own)  # draws are each of all rooms
     assert [r.layout_type for r in own] == [r.layout_type for r in other]
     assert all(abs(np.log(a.area / b.area)) < np.log(1.0801) for a, b in zip(own, other, strict=True))
     assert len({r.name for r in other}) == len(other) > 8
     larger = [replace(room, polygon=1.05 * room.polygon) for room in kitchens[:1]]
-    assert alike(np.random.default_rng(0), kitchens[:1], larger) == ([], [])
+    assert alike(np.random.default_rng(0), kitchens[:1], larger, 1) == [([], [])]
 
 
 @pytest.fixture(scope="module")
