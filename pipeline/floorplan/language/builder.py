@@ -100,10 +100,16 @@ def _count(draft: Draft, state: Reading) -> None:
     if count > MAX_ROOMS:
         raise RefusedError(f"{count} rooms are asked for", f"ask for {MAX_ROOMS} at most")
     lex = state.heard.lexicon
-    if "counts_living_rooms" in lex.traits and count <= MOST_COUNTED and not any(mark.text.endswith(t) for t in lex.sign("all_rooms")):
+    usual = "counts_living_rooms" in lex.traits  # there "three rooms" is how one says what is to live and to sleep in
+    # elsewhere "six rooms: three bedrooms, ..." lists all, but "three rooms, kitchen, bath" does not
+    listed = any(mark.text.endswith(t) for t in lex.sign("all_rooms")) if usual else count <= len(stock.rooms)
+    if count <= MOST_COUNTED and not listed:
+        known = list(stock.rooms)
         _living_rooms(draft, state, count, mark)
+        for room in stock.rooms:
+            room.stated &= usual or room in known
     elif count > 1:
-        while sum(r.type not in BESIDES for r in stock.rooms) < count:
+        while sum(r.type not in BESIDES for r in stock.rooms) < count and len(stock.rooms) != count:
             stock.add(
                 next((k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)), "bedroom"), "", "room", None
             ).stated = False
