@@ -1,26 +1,24 @@
 """Failures to find a plan: programs of the prior, and programs read off plans of an independent generator.
 
 A refusal, a crash and whatever the audit finds are failures alike. Nothing stops the run: each is printed with its seed and reason.
-A run of LEAST programs or more is kept in benchmarks/records/failures.json.
 """
 
 import multiprocessing
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
 
-from benchmarks.planning import audit, record, times, trees
+from benchmarks.planning import audit, trees
 from pipeline.errors import SfgenError
-from pipeline.floorplan import FloorProgram, complete, prior, solve
+from pipeline.execution import single_thread
+from pipeline.floorplan import FloorProgram, complete, prior, solve, warm
 
 SOURCES: dict[str, Callable[[np.random.Generator], FloorProgram]] = {"prior": prior, "trees": trees.program}
-RECORD = "failures.json"
-LEAST = 1000  # programs of a run that is kept
 CHUNK = 250  # programs between two lines of progress
 Attempt = tuple[float, list[str]]
 
@@ -30,40 +28,43 @@ def main(count: int, start: int = 0, sources: tuple[str, ...] = tuple(SOURCES), 
     failed = 0
     for source in sources:
         spent: list[float] = []
-        faults: list[dict[str, Any]] = []
+        faulty = 0
         for number, (seconds, bad) in enumerate(attempts(source, start, count, jobs), start):
             spent.append(seconds)
+            faulty += bool(bad)
             if bad:
-                faults.append({"seed": number, "why": bad})
                 print(f"  {source} {number}: {'; '.join(bad)}", flush=True)
             if len(spent) % CHUNK == 0 or len(spent) == count:
-                print(f"... {source}: {number + 1}, {len(faults)} failed", file=sys.stderr, flush=True)
-        if count >= LEAST:
-            figures = {"start": start, "count": count, "cpu_s": round(sum(spent), 1), "slowest_s": round(max(spent), 2), "failures": faults}
-            record.write(RECORD, record.read(RECORD) | {source: record.with_provenance("failures", count, figures)})
-        print(f"{source}: {len(faults)} of {count} failed; CPU ms mean {1e3 * np.mean(spent):.0f}", end="")
+                print(f"... {source}: {number + 1}, {faulty} failed", file=sys.stderr, flush=True)
+        print(f"{source}: {faulty} of {count} failed; CPU ms mean {1e3 * np.mean(spent):.0f}", end="")
         print(f", p50 {1e3 * np.median(spent):.0f}, p99 {1e3 * np.percentile(spent, 99):.0f}, max {1e3 * max(spent):.0f}", flush=True)
-        failed += len(faults)
+        failed += faulty
     return failed
 
 
 def attempts(source: str, start: int, count: int, jobs: int) -> Iterator[Attempt]:
     """Yield what became of each program, in their order; `jobs` processes share the work."""
-    numbers = range(start, start + count)
+    return in_processes(attempt, [(source, number) for number in range(start, start + count)], jobs)
+
+
+def in_processes(measure: Callable[[Any], Any], work: Sequence[Any], jobs: int) -> Iterator[Any]:
+    """Yield what is measured of each piece of work, in their order, by `jobs` processes that have compiled the planner."""
     if jobs <= 1:
-        yield from (attempt(source, k) for k in numbers)
+        yield from map(measure, work)
         return
     # spawned, not forked: a child must not inherit the threads of libraries that are already at work
     with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"), initializer=_warm) as pool:
-        yield from pool.map(attempt, [source] * count, numbers, chunksize=5)
+        yield from pool.map(measure, work, chunksize=5)
 
 
 def _warm() -> None:
-    solve(times.home(5), 0)  # loads what is compiled: no program pays for it
+    single_thread()
+    warm()
 
 
-def attempt(source: str, number: int) -> Attempt:
-    """Solve one program; return the solver's CPU seconds and what is wrong, each fault with its kind before a colon."""
+def attempt(one: tuple[str, int]) -> Attempt:
+    """Solve one program, by source and number; return the solver's CPU seconds and what is wrong, each fault with its kind before a colon."""
+    source, number = one
     start = time.process_time()
     try:
         program = complete(SOURCES[source](np.random.default_rng((number, 4))))

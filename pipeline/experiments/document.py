@@ -13,12 +13,11 @@ from pipeline.errors import SfgenError
 from pipeline.execution import cores, map_jobs
 from pipeline.experiments import lineup
 from pipeline.experiments.dataset import RejectCount, shipped_rows
-from pipeline.experiments.knobs import knob_picture, monotone
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
 from pipeline.manifest import write_bytes, write_with
-from pipeline.report import baselines, calibration, planning, sections
+from pipeline.report import baselines, calibration, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
 from pipeline.report.realism import realism_section
@@ -28,8 +27,6 @@ from schemas.rooms import ROOMS
 from schemas.scenes import SCENES
 
 SHOWN = 24  # top views on the page
-
-RECORDS = "benchmarks/records"  # figures that are too dear for `make run`, each with its commit and command
 
 
 def write_report(
@@ -47,15 +44,12 @@ def write_report(
         if (root / "plots" / "loss.csv").is_file()
         else []
     )
-    bars, failures, knobs = (_json(root / RECORDS / name) for name in ("planning.json", "failures.json", "knobs.json"))
     chapters = [
         Section("Views", [missing] if missing else [], pictures=gallery, wide=True),
         sections.dataset_section(
             figures["dataset"], _json(root / "metrics" / "sampling.json") | _json(root / "metrics" / "timing.json"), views
         ),
         sections.plan_section(figures["plan"]),
-        planning.planning_section(bars, failures, knobs, monotone),
-        _knobs(folder, knobs),
         sections.quantity_section(figures["quantity"], rates["quantity"]),
         sections.articulation_section(figures["articulation"], figures["ablation"]),
         sections.walkable_section(figures["walkable"], rates["walkable"]),
@@ -101,14 +95,6 @@ def _calibration(folder: Path, comparison: Mapping[str, Any]) -> Section | None:
         write_bytes(folder / "plots" / f"{name}.png", png)
         pictures.append(Picture(f"plots/{name}.png", name.replace("_", ", ")))
     return calibration.calibration_section(comparison, pictures)
-
-
-def _knobs(folder: Path, table: Mapping[str, Any]) -> Section | None:
-    """Return the chapter of the knobs, from the table that the checkout carries; a checkout without benchmarks has none."""
-    if not table:
-        return None
-    write_bytes(folder / "plots" / "knobs.png", knob_picture(table))
-    return sections.knob_section(table, Picture("plots/knobs.png", "each knob against its own term"))
 
 
 def _reject_row(reject: RejectCount) -> list[str]:

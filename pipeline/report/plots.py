@@ -41,28 +41,6 @@ def lines(curves: Sequence[Curve], *, title: str, x: str, y: str, y_range: tuple
     return _png(figure)
 
 
-def panels(curves: Sequence[Curve], *, title: str, x: str, columns: int = 4) -> bytes:
-    """Draw each curve in a small panel of its own, from zero, with its interval as a band, and return a PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    rows = -(-len(curves) // columns)
-    figure = Figure(figsize=(2.4 * columns, 1.7 * rows), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
-    figure.suptitle(title, fontsize=10)
-    for axes, curve in zip(figure.subplots(rows, columns).flat, curves, strict=False):
-        axes.plot(curve.x, curve.y, "-o", color=COLOURS[2], markersize=3, linewidth=1.4)
-        if curve.low is not None and curve.high is not None:
-            axes.fill_between(curve.x, curve.low, curve.high, color=COLOURS[2], alpha=0.18, linewidth=0)
-        axes.set_title(curve.label, fontsize=9)
-        axes.set_ylim(0, 1.08 * max(*(curve.high or curve.y), 1e-6))
-        axes.tick_params(labelsize=7)
-        axes.grid(color="#e6eaef")
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.set_xlabel(x, fontsize=7)
-    return _png(figure)
-
-
 def bars(groups: Mapping[str, Sequence[float]], labels: Sequence[str], *, title: str, y: str) -> bytes:
     """Draw grouped bars, one group of bars per label, and return a PNG."""
     import numpy as np

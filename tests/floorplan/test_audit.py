@@ -182,19 +182,3 @@ def test_outside_walls_are_no_thinner_than_those_between_rooms():
 
 def test_processes_give_what_one_gives():
     assert [bad for _, bad in failures.attempts("trees", 0, 3, 2)] == [bad for _, bad in failures.attempts("trees", 0, 3, 1)]
-
-
-def test_small_samples_leave_the_record_alone(monkeypatch, tmp_path):
-    monkeypatch.setattr(failures.record, "RECORDS", tmp_path)
-    monkeypatch.setattr(failures, "LEAST", 4)
-    monkeypatch.setattr(
-        failures,
-        "attempts",
-        lambda source, start, count, jobs: iter([(0.1, ["fault: x"] if k == 5 else []) for k in range(start, start + count)]),
-    )
-    failures.main(3, 3, ("trees",))
-    assert failures.record.read(failures.RECORD) == {}
-    failures.main(4, 3, ("trees",))
-    found = failures.record.read(failures.RECORD)["trees"]
-    assert [f["seed"] for f in found["figures"]["failures"]] == [5]
-    assert found["command"].endswith("--count 4")

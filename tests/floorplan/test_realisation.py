@@ -10,11 +10,11 @@ from pipeline.floorplan.realise.realisation import NARROW, _is_narrow
 
 @pytest.mark.parametrize("number", [461, 620, 705, 1019, 2288])
 def test_programs_of_the_prior_that_failed_once(number):
-    assert failures.attempt("prior", number)[1] == []
+    assert failures.attempt(("prior", number))[1] == []
 
 
 def test_a_program_of_an_independent_generator_that_failed_once():
-    assert failures.attempt("trees", 626)[1] == []
+    assert failures.attempt(("trees", 626))[1] == []
 
 
 @pytest.mark.parametrize(
