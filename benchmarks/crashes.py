@@ -21,8 +21,8 @@ import pyarrow as pa
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "shards")]
-import crashes  # noqa: E402 - the tests' own checks, over more states
-import made  # noqa: E402
+import crashes
+import made
 
 HEADER = replace(made.HEADER, count=12)
 

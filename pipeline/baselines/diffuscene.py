@@ -25,7 +25,7 @@ class Denoiser(nn.Module):
     def __init__(self, scaling: Scaling, layouts: int, settings: BaselineSettings) -> None:
         super().__init__()
         width = settings.width
-        self.scaling, self.settings = scaling, settings
+        self.scaling, self.settings, self.levels = scaling, settings, Levels.linear(settings.timesteps)
         self.floor = FloorEncoder(width, layouts, scaling.high[0])
         self.level = nn.Sequential(nn.Linear(64, width), nn.SiLU(), nn.Linear(width, width))
         self.enter = nn.Sequential(nn.Linear(scaling.channels, width), nn.GELU(), nn.Linear(width, width))
@@ -47,32 +47,32 @@ def clean(raw: Tensor, x: Tensor, alpha: Tensor | float, sigma: Tensor | float) 
     return alpha * x - sigma * raw
 
 
-def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, rng: torch.Generator) -> Tensor:
+def loss(net: Denoiser, rooms: Outlines, things: Furniture, rng: torch.Generator) -> Tensor:
     """Return DiffuScene's loss of a batch: denoising, and overlaps of what is expected."""
-    x0, t, noise, x = add_noise(net, levels, things, rng)
+    x0, t, noise, x = add_noise(net, things, rng)
     raw = net(x, t, net.floor(rooms))
-    total = denoising(net, levels, raw, x0, noise, t)
+    total = denoising(net, raw, x0, noise, t)
     if not net.settings.iou_weight:
         return total
-    alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
-    expected = clean(raw, x, alpha, sigma)
-    return total + net.settings.iou_weight * (levels.alpha[t] ** 2 * upright_overlap(net.scaling, expected)).mean()
+    alpha, sigma = net.levels.of(t)
+    return total + net.settings.iou_weight * (alpha[:, 0, 0] ** 2 * upright_overlap(net.scaling, clean(raw, x, alpha, sigma))).mean()
 
 
-def add_noise(net: Denoiser, levels: Levels, things: Furniture, rng: torch.Generator) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+def add_noise(net: Denoiser, things: Furniture, rng: torch.Generator) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Draw levels t (B,), uniform in 1..T, and noise; return x0, t, eps, x_t."""
     x0 = net.scaling.encode(things)
     t = torch.randint(1, net.settings.timesteps + 1, (len(x0),), generator=rng)
     noise = torch.randn(x0.shape, generator=rng)
-    return x0, t, noise, levels.alpha[t][:, None, None] * x0 + levels.sigma[t][:, None, None] * noise
+    alpha, sigma = net.levels.of(t)
+    return x0, t, noise, alpha * x0 + sigma * noise
 
 
-def denoising(net: Denoiser, levels: Levels, raw: Tensor, x0: Tensor, noise: Tensor, t: Tensor) -> Tensor:
+def denoising(net: Denoiser, raw: Tensor, x0: Tensor, noise: Tensor, t: Tensor) -> Tensor:
     """Return the mean squared error of the prediction: boxes, classes and latents weigh the same, whatever their numbers of channels.
 
     An error of v weighs alpha^2, as DiffuScene has it: it is then the error of eps.
     """
-    alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
+    alpha, sigma = net.levels.of(t)
     error = alpha * (raw - alpha * noise + sigma * x0)
     boxes, classes, latents = (error**2).split([BOX, net.scaling.empty + 1 - BOX, net.scaling.channels - net.scaling.empty - 1], -1)
     total: Tensor = boxes.mean() + classes.mean() + latents.mean()
@@ -104,7 +104,7 @@ def levels_of(levels: Levels, steps: int) -> list[int]:
 @torch.no_grad()
 def sample(net: Denoiser, rooms: Outlines, rng: torch.Generator, guide: Guide | None = None) -> Tensor:
     """Return x0 (B, N, D) after DDPM's steps from level to level: x_s ~ N(mean + what the guide adds, variance), as q(x_s | x_t, x0) has them."""
-    levels, floor, s = Levels.linear(net.settings.timesteps), net.floor(rooms), net.settings
+    levels, floor, s = net.levels, net.floor(rooms), net.settings
     stops = levels_of(levels, s.steps)
     x = torch.randn((len(rooms), s.slots, net.scaling.channels), generator=rng)
     for t, following in zip(stops, [*stops[1:], 0], strict=True):

@@ -16,8 +16,11 @@ class Levels(NamedTuple):
 
     alpha: Tensor
     sigma: Tensor
-    beta: Tensor
     variance: Tensor
+
+    def of(self, t: Tensor) -> tuple[Tensor, Tensor]:
+        """Return alpha and sigma (B, 1, 1) at levels t (B,)."""
+        return self.alpha[t][:, None, None], self.sigma[t][:, None, None]
 
     @classmethod
     def linear(cls, timesteps: int) -> Levels:
@@ -27,4 +30,4 @@ class Levels(NamedTuple):
         kept = torch.cumprod(1 - beta, 0)
         variance = torch.zeros_like(beta)
         variance[1:] = (1 - kept[:-1]) / (1 - kept[1:]) * beta[1:]
-        return cls(*(v.float() for v in (kept.sqrt(), (1 - kept).sqrt(), beta, variance)))
+        return cls(*(v.float() for v in (kept.sqrt(), (1 - kept).sqrt(), variance)))

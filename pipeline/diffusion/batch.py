@@ -106,7 +106,7 @@ def collate(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[Room
         classes[i, :n] = torch.from_numpy(example.classes)
         channels[i, :n] = codec.normalise(torch.from_numpy(example.continuous).float(), classes[i, :n])
         sweeps[i, :n] = torch.from_numpy(example.sweeps)
-    rooms = room_batch([e.floor for e in examples], [e.layout for e in examples], [e.height for e in examples])
+    rooms = room_batch([e.floor for e in examples], [e.layout for e in examples], [e.context.height for e in examples])
     return rooms, Objects(classes, channels, sweeps)
 
 

@@ -12,7 +12,7 @@ from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
 from pipeline.execution import cores, map_jobs
 from pipeline.experiments import lineup
-from pipeline.experiments.dataset import RejectCount, shipped_rows
+from pipeline.experiments.dataset import reject_rows, shipped_rows
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
@@ -29,9 +29,7 @@ from schemas.scenes import SCENES
 SHOWN = 24  # top views on the page
 
 
-def write_report(
-    root: Path, figures: Mapping[str, Any], rejects: Sequence[RejectCount], factory: Factory, settings: MetricsSettings
-) -> None:
+def write_report(root: Path, figures: Mapping[str, Any], factory: Factory, settings: MetricsSettings) -> None:
     """Write report/index.html with its pictures, from the figures and the dataset of this checkout."""
     folder = root / "report"
     shutil.rmtree(folder, ignore_errors=True)
@@ -58,7 +56,7 @@ def write_report(
         realism_section(figures["realism"], lineups(root, folder, homes, factory, settings)),
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
         _calibration(folder, _json(root / "metrics" / "calibration.json")),
-        sections.reject_section([_reject_row(r) for r in rejects]),
+        sections.reject_section(reject_rows(root)),
     ]
     write_bytes(folder / "index.html", render("Homes for robots", _lead(root), [c for c in chapters if c]).encode())
 
@@ -95,11 +93,6 @@ def _calibration(folder: Path, comparison: Mapping[str, Any]) -> Section | None:
         write_bytes(folder / "plots" / f"{name}.png", png)
         pictures.append(Picture(f"plots/{name}.png", name.replace("_", ", ")))
     return calibration.calibration_section(comparison, pictures)
-
-
-def _reject_row(reject: RejectCount) -> list[str]:
-    reason = reject.reason
-    return [reject.stage, reject.what, reject.code, reason.effect, str(reject.count), reason.doc, reject.example[:90]]
 
 
 def dataset_homes(root: Path) -> list[Home]:
