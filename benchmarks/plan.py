@@ -3,24 +3,24 @@
 python -m benchmarks.plan scores --count 5          the 20 prompts on 5 seeds, from the words alone and given the rooms, links and areas of the ground truth
 python -m benchmarks.plan times --count 200         CPU ms for 5, 8 and 12 rooms, and how much search they buy
 python -m benchmarks.plan failures --count 10000    programs of the prior, and of an independent generator
-python -m benchmarks.plan knobs --count 120         every knob against its own term; a table over 100 seeds and more is drawn into docs/images/knobs.png
 """
 
 import argparse
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.planning import failures, knobs
+from benchmarks import knobs
 from pipeline.experiments.prompt_file import read_prompts
 from pipeline.experiments.prompts import evaluate_prompts, report
 from pipeline.floorplan import FloorProgram, complete, parse, warm
 from pipeline.floorplan.program.floor_program import Entrance, Link, Range, RoomReq
 from pipeline.floorplan.solver import search
+from tests.floorplan.attempts import SOURCES, attempt
 
 CASES = Path(__file__).resolve().parents[1] / "manifests" / "prompts" / "benchmark.yaml"
 HOMES = {
@@ -28,25 +28,24 @@ HOMES = {
     8: knobs.FLAT,
     12: "living_room kitchen dining_room hallway bedroom bedroom bedroom bathroom bathroom wc utility office",
 }
-COUNTS = {"scores": 5, "times": 200, "failures": 200, "knobs": 12}
+COUNTS = {"scores": 5, "times": 200, "failures": 200}
+CHUNK = 250  # programs between two lines of progress
 
 
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.plan", description="Floor plans, measured.")
     parser.add_argument("what", nargs="*", choices=[*COUNTS, []], help="default: all")
     parser.add_argument("--count", type=int, help="seeds or programs")
-    parser.add_argument("--start", type=int, default=0, help="failures, knobs: number of the first program or seed")
-    parser.add_argument("--jobs", type=int, default=2, help="failures, knobs: processes")
-    parser.add_argument("--source", choices=failures.SOURCES, action="append", help="failures: programs of these only")
+    parser.add_argument("--start", type=int, default=0, help="failures: number of the first program")
+    parser.add_argument("--jobs", type=int, default=2, help="failures: processes")
+    parser.add_argument("--source", choices=SOURCES, action="append", help="failures: programs of these only")
     chosen = parser.parse_args(arguments)
     failed = 0
     for what in chosen.what or COUNTS:
         count = chosen.count or COUNTS[what]
         print(f"-- {what}", flush=True)
         if what == "failures":
-            failed += failures.main(count, chosen.start, tuple(chosen.source or failures.SOURCES), chosen.jobs)
-        elif what == "knobs":
-            knobs.main(count, chosen.start, chosen.jobs)
+            failed += failures(count, chosen.start, chosen.source or tuple(SOURCES), chosen.jobs)
         else:
             {"scores": scores, "times": times}[what](count)
     return min(1, failed)
@@ -91,6 +90,26 @@ def times(seeds: int) -> None:
             f" {runs.mean():6.1f}  {proposals.mean() / count:8.0f} ({proposals.min() / count:.0f})"
             f" {slicings.mean():16.1f} {sliced.mean() / count:10.0f}"
         )
+
+
+def failures(count: int, start: int, sources: Sequence[str], jobs: int) -> int:
+    """Solve programs number `start` to `start + count` of each source in `jobs` processes; print what failed with its reasons, return how many did."""
+    failed = 0
+    for source in sources:
+        spent: list[float] = []
+        faulty = 0
+        work = [(source, number) for number in range(start, start + count)]
+        for (_, number), (seconds, bad) in zip(work, knobs.in_processes(attempt, work, jobs), strict=True):
+            spent.append(seconds)
+            faulty += bool(bad)
+            if bad:
+                print(f"  {source} {number}: {'; '.join(bad)}", flush=True)
+            if len(spent) % CHUNK == 0 or len(spent) == count:
+                print(f"... {source}: {number + 1}, {faulty} failed", file=sys.stderr, flush=True)
+        print(f"{source}: {faulty} of {count} failed; CPU ms mean {1e3 * np.mean(spent):.0f}", end="")
+        print(f", p50 {1e3 * np.median(spent):.0f}, p99 {1e3 * np.percentile(spent, 99):.0f}, max {1e3 * max(spent):.0f}", flush=True)
+        failed += faulty
+    return failed
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.planning.knobs import VALUES, draw, knob_table, monotone, subjects
+from benchmarks.knobs import VALUES, draw, knob_table, monotone, subjects
 from pipeline.floorplan.search.energy import TERMS
 
 

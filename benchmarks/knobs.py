@@ -1,19 +1,25 @@
-"""The knob experiment: each of the twelve style knobs is turned from -3 to 3, and its own energy term is measured on the plans."""
+"""The knob experiment: each of the twelve style knobs is turned from -3 to 3, and its own energy term is measured on the plans.
 
-from collections.abc import Collection, Mapping
+python -m benchmarks.knobs [seeds] [first seed]; a table over 100 seeds and more is drawn into docs/images/knobs.png
+"""
+
+import sys
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from functools import cache
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks.planning.failures import in_processes
-from pipeline.floorplan import FloorProgram, complete
+from pipeline.execution import cores, single_thread
+from pipeline.floorplan import FloorProgram, complete, warm
 from pipeline.floorplan.program.floor_program import Link, RoomReq, Style
 from pipeline.floorplan.search.energy import TERMS
 from pipeline.floorplan.solver import search
 
-PICTURE = Path(__file__).resolve().parents[2] / "docs" / "images" / "knobs.png"
+PICTURE = Path(__file__).resolve().parents[1] / "docs" / "images" / "knobs.png"
 LEAST = 100  # seeds of a table that is drawn
 VALUES = (-3, -2, -1, 0, 1, 2, 3)
 FLAT = "living_room kitchen bedroom bedroom bathroom hallway wc balcony"
@@ -22,9 +28,9 @@ DEEP = "entry living_room dining_room kitchen hallway bedroom bedroom bathroom o
 GROUND, UPPER = "entry living_room kitchen wc", "bedroom bedroom bathroom"
 
 
-def main(seeds: int, first: int, jobs: int) -> None:
+def main(seeds: int = 12, first: int = 0) -> None:
     """Print the means of each term over its knob's values; those over LEAST seeds and more are drawn."""
-    table = knob_table(seeds, jobs, first=first)
+    table = knob_table(seeds, cores(), first=first)
     head = "".join(f"{f'2^{v}':>9s}" for v in VALUES)
     print(f"means over {seeds} seeds of each knob's own term\n{'knob':14s}{head}    ends / error  monotone")
     for name, term in table.items():
@@ -74,6 +80,21 @@ def knob_table(seeds: int, jobs: int = 1, names: Collection[str] = TERMS, first:
     return table
 
 
+def in_processes(measure: Callable[[Any], Any], work: Sequence[Any], jobs: int) -> Iterator[Any]:
+    """Yield what is measured of each piece of work, in their order, by `jobs` processes that have compiled the planner."""
+    if jobs <= 1:
+        yield from map(measure, work)
+        return
+    # spawned, not forked: a child must not inherit the threads of libraries that are already at work
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_warm) as pool:
+        yield from pool.map(measure, work, chunksize=5)
+
+
+def _warm() -> None:
+    single_thread()
+    warm()
+
+
 def _measure(one: tuple[str, int, int]) -> float:
     """Return the knob's own term of one plan: of the knob `name`, turned to `value`, from `seed`."""
     name, value, seed = one
@@ -110,3 +131,7 @@ def draw(table: Mapping[str, Any], seeds: int, path: Path = PICTURE, columns: in
         axes.spines[["top", "right"]].set_visible(False)
         axes.set_xlabel("knob k: weight times 2^k", fontsize=7)
     figure.savefig(path, metadata={"Software": None})
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))
