@@ -44,7 +44,7 @@ def main(root: Path) -> None:
     own = ours.train_model(
         root, folder, replace(layout, start="scratch"), params.section(SampleSettings, tree, "sample"), settings.seconds, tree["seed"]
     )
-    makers |= {name: partial(ours.furnish, own.sampler, guide) for name, guide in (("ours", "none"), ("ours_guided", "heuristic"))}
+    makers |= {"ours": partial(ours.furnish, own.sampler, "none"), "ours_guided": partial(ours.furnish, own.sampler, "heuristic")}
     cases = cases_of(getattr(job.sets, metrics.split), job.scaling.classes)
     opens = dict(zip(job.scaling.classes, job.opens.tolist(), strict=True))
     comparison = compare_models(makers, cases, opens, settings, tree["seed"], files.load(root / "data/tables/relations.json"))

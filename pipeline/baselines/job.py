@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import torch
 from torch import Tensor, nn
@@ -12,7 +13,7 @@ from pipeline.baselines import atiss, diffuscene, scenefoundry
 from pipeline.baselines.rooms import Furniture, Outlines, furniture, outlines
 from pipeline.baselines.scaling import Scaling
 from pipeline.baselines.settings import BaselineSettings
-from pipeline.baselines.training import Loss, Trainer
+from pipeline.baselines.training import Trainer
 from pipeline.diffusion.rooms import Sets, layout_weights, read_sets
 from pipeline.diffusion.sampling import openable_classes
 
@@ -46,7 +47,7 @@ def trainer(name: str, job: Job, settings: BaselineSettings, seed: int) -> Train
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(seeds.key(seed, "baseline-init", name) % 2**63)
         net: nn.Module = (atiss.Autoregressive if name == "atiss" else diffuscene.Denoiser)(job.scaling, len(job.layouts), settings)
-    losses: dict[str, Loss] = {
+    losses: dict[str, Any] = {
         "atiss": atiss.loss,
         "diffuscene": diffuscene.loss,
         "scenefoundry": partial(scenefoundry.loss, opens=job.opens),
