@@ -87,8 +87,9 @@ def bucket_of(counts: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def room_batch(floors: Sequence[Floor], layouts: Sequence[int], heights: Sequence[float]) -> RoomBatch:
     """Stack rooms."""
-    tokens = (torch.from_numpy(np.stack([getattr(floor, f.name) for floor in floors])) for f in fields(Floor))
-    return RoomBatch(*tokens, torch.tensor(layouts), torch.tensor(heights, dtype=torch.float32))
+    stacked = [torch.from_numpy(np.stack([getattr(floor, f.name) for floor in floors])) for f in fields(Floor)]
+    stacked += [torch.tensor(layouts), torch.tensor(heights, dtype=torch.float32)]
+    return RoomBatch(*stacked)
 
 
 def collate(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[RoomBatch, Objects]:
