@@ -12,11 +12,9 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from statistics import fmean
 
 ROOT = Path(__file__).resolve().parents[1]
 PROMPT = "a two-bedroom apartment with an open kitchen"
-ALONE = 12  # homes that are made one by one
 
 
 def homes(count: int) -> None:
@@ -27,15 +25,6 @@ def homes(count: int) -> None:
 
     factory = open_factory(ROOT, 17)
     factory.make([Request(10_000)])  # compiles, and reads the first assets
-    for what, prompt in (("that prompt", PROMPT), ("the prior", "")):
-        alone = []
-        for index in range(20_000, 20_000 + ALONE):
-            factory.seconds.clear()
-            factory.make([Request(index, prompt)])
-            alone.append(sum(factory.seconds.values()))
-        print(
-            f"a home alone, in a process that has made one, of {what}: {fmean(alone):.2f} CPU s ({min(alone):.2f} to {max(alone):.2f}, {ALONE} homes)"
-        )
     factory.seconds.clear()
     start = time.perf_counter()
     successes = []

@@ -10,26 +10,43 @@ other floors than theirs are in the way; that of the same rooms finished is what
 places of theirs. At the end stand the floors of training rooms, which `part` in manifests/rooms.yaml is taken from.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import time
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from pipeline.diffusion.sampling import Sampler
-    from pipeline.entities.home import Placement
-    from pipeline.homes.factory import Factory
-    from pipeline.homes.furnish import Draft
-    from pipeline.homes.request import RoomJob
-    from pipeline.metrics.views import Features
-    from pipeline.relations.arrangement import Arrangement
+from pipeline import params, tables, taxonomy
+from pipeline.diffusion.codec import proposals_of
+from pipeline.diffusion.context import RoomContext
+from pipeline.diffusion.rooms import Example, read_sets
+from pipeline.diffusion.sampling import Sampler
+from pipeline.entities.home import Placement
+from pipeline.experiments.realism import alike, embeddings, furnished
+from pipeline.experiments.rooms import FIRST, spread, test_rooms
+from pipeline.homes.factory import Factory, load_factory
+from pipeline.homes.furnish import Draft, draft_rooms, retrieve
+from pipeline.homes.request import RoomJob
+from pipeline.homes.room_finishing import finish
+from pipeline.homes.rows import object_row
+from pipeline.metrics.articulation import are_obstructed, sweeps_of
+from pipeline.metrics.layout_features import features
+from pipeline.metrics.relations import compare, furniture
+from pipeline.metrics.two_samples import forest_accuracy, frechet
+from pipeline.metrics.views import Features, features_once
+from pipeline.relations import files
+from pipeline.relations.arrangement import Arrangement, make_arrangement
+from pipeline.relations.split import rooms_of
+from schemas.openings import OPENINGS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
 
 ROOT = Path(__file__).resolve().parents[1]
 SPLIT = "test"
@@ -37,92 +54,58 @@ SPLIT = "test"
 SAMPLERS = {"plain": "plain and finished", "unguided": "unguided and finished", "guided": "finished"}
 LEAST = 10  # percentile of the training rooms' areas that `part` is
 
-Rooms = list["Arrangement"]
-Row = dict[str, Any]
-Furnished = Mapping[str, Sequence[Sequence["Placement"]]]  # by set: the furniture of each room
+Furniture = Sequence[Sequence[Placement]]  # of each room
 
 
-def rooms_of(jobs: Sequence[RoomJob], furniture: Sequence[Sequence[Placement]]) -> Rooms:
+class Unasked(Sampler):
+    """A sampler that hears of no number, no bounds and no company."""
+
+    def inventories(self, rooms: Any, keys: Any, floors: Any) -> Any:
+        """Draw what each room holds."""
+        free = [replace(room, n_target=None, category_bounds=(), company=()) for room in rooms]
+        return Sampler.inventories(self, free, keys, floors)
+
+
+def arrangements(jobs: Sequence[RoomJob], made: Furniture) -> list[Arrangement]:
     """Return furnished rooms as the metrics read them."""
-    from pipeline.metrics import relations
-    from pipeline.relations.arrangement import make_arrangement
-
-    return [
-        relations.furniture(
-            make_arrangement(str(job.index), job.layout_type, job.room.polygon, [(p.category, p.position, p.yaw, p.size) for p in own])
-        )
-        for job, own in zip(jobs, furniture, strict=True)
-    ]
+    things = [[(p.category, p.position, p.yaw, p.size) for p in own] for own in made]
+    return [furniture(make_arrangement(str(j.index), j.layout_type, j.room.polygon, own)) for j, own in zip(jobs, things, strict=True)]
 
 
-def furnish_rooms(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, float]) -> Furnished:
+def furnish_rooms(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, float]) -> dict[str, Furniture]:
     """Furnish rooms, each set of SAMPLERS as drafted and finished; adds CPU seconds by set."""
-    from pipeline.homes.furnish import draft_rooms
-
     unguided = factory.sampler.baseline()
-    sets: dict[str, Sequence[Sequence[Placement]]] = {}
-    for name, sampler in zip(SAMPLERS, (unasked(unguided), unguided, factory.sampler), strict=True):
+    plain = Unasked(*(getattr(unguided, f.name) for f in fields(Sampler)))
+    sets: dict[str, Furniture] = {}
+    for (name, after), sampler in zip(SAMPLERS.items(), (plain, unguided, factory.sampler), strict=True):
         start = time.process_time()
         drafts = draft_rooms(replace(factory, sampler=sampler), jobs)
-        drafted = time.process_time()
-        sets |= {name: [d.placements for d in drafts], SAMPLERS[name]: finished(factory, drafts)}
-        for part, spent in ((name, drafted - start), (SAMPLERS[name], time.process_time() - drafted)):
-            seconds[part] = seconds.get(part, 0.0) + spent
+        seconds[name] += (drafted := time.process_time()) - start
+        sets |= {name: [d.placements for d in drafts], after: finished(factory, drafts)}
+        seconds[after] += time.process_time() - drafted
     return sets
 
 
-def unasked(sampler: Sampler) -> Sampler:
-    """Return a sampler that hears of no number, no bounds and no company."""
-    from dataclasses import fields
-
-    from pipeline.diffusion.sampling import Sampler
-
-    class Unasked(Sampler):
-        def inventories(self, rooms: Any, keys: Any, floors: Any) -> Any:
-            return super().inventories([replace(room, n_target=None, category_bounds=(), company=()) for room in rooms], keys, floors)
-
-    return Unasked(*(getattr(sampler, f.name) for f in fields(Sampler)))
-
-
-def finished(factory: Factory, drafts: Sequence[Draft]) -> Sequence[Sequence[Placement]]:
+def finished(factory: Factory, drafts: Sequence[Draft]) -> Furniture:
     """Return what the arranger makes of drafts."""
-    from pipeline import taxonomy
-    from pipeline.homes.room_finishing import finish
-
-    f = factory
-    return [finish(d, f.library, f.index, f.learnt, f.postopt, f.verify, taxonomy.load()).placements for d in drafts]
+    f, known = factory, taxonomy.load()
+    return [finish(d, f.library, f.index, f.learnt, f.postopt, f.verify, known).placements for d in drafts]
 
 
-def drafts_of_real(factory: Factory, jobs: Sequence[RoomJob], names: Sequence[str]) -> Sequence[Draft]:
-    """Return real rooms, named as `scene_id/room_id`, as drafts: for each thing the library's model that is nearest to its size and shape."""
-    from pipeline import tables, taxonomy
-    from pipeline.diffusion.context import Proposal, RoomContext
-    from pipeline.homes.furnish import retrieve
-    from schemas.assets import LATENTS
-    from schemas.objects import OBJECTS
-
-    known, data = taxonomy.load(), ROOT / "data"
-    latents = {row["asset_id"]: np.array(row["latent"], np.float32) for row in tables.read(data / "latents" / "latents.parquet", LATENTS)}
-    inside: dict[str, list[Proposal]] = {}
-    for row in tables.read(data / "tables" / "objects.parquet", OBJECTS):
-        if row["category"] in known.names:
-            own = Proposal(row["category"], np.array(row["position"]), row["yaw"], np.array(row["size"]), latents[row["asset_id"]])
-            inside.setdefault(f"{row['scene_id']}/{row['room_id']}", []).append(own)
-    contexts = [RoomContext.of(job.plan, job.room_id, job.layout_type) for job in jobs]
-    return [
-        retrieve(job, context, inside[name], factory.index, known, factory.seed)
-        for job, context, name in zip(jobs, contexts, names, strict=True)
-    ]
+def drafts_of_real(factory: Factory, jobs: Sequence[RoomJob], real: Sequence[Example]) -> list[Draft]:
+    """Return real rooms as drafts: for each thing the library's model that is nearest to its size and shape."""
+    drafts, known = [], taxonomy.load()
+    for job, room in zip(jobs, real, strict=True):
+        context = RoomContext.of(job.plan, job.room_id, job.layout_type)
+        things = proposals_of(room.continuous, [known.names[k] for k in room.classes], context)
+        drafts.append(retrieve(job, context, things, factory.index, known, factory.seed))
+    return drafts
 
 
-def obstructed(factory: Factory, jobs: Sequence[RoomJob], furniture: Sequence[Sequence[Placement]]) -> str:
+def obstructed(factory: Factory, jobs: Sequence[RoomJob], made: Furniture) -> str:
     """Return R_acoll in words, as a share of the objects that open: by the paper's box and by the real sweeps."""
-    from pipeline.homes.rows import object_row
-    from pipeline.metrics.articulation import are_obstructed, sweeps_of
-
-    box, swept = [], []
-    sweeps = sweeps_of(factory.library.joints)
-    for job, own in zip(jobs, furniture, strict=True):
+    sweeps, box, swept = sweeps_of(factory.library.joints), [], []
+    for job, own in zip(jobs, made, strict=True):
         rows = [object_row(str(job.index), p, openable=factory.library[p.asset_id].openable) for p in own]
         box += are_obstructed(rows, "heuristic")
         swept += are_obstructed(rows, "joints", sweeps)
@@ -130,42 +113,32 @@ def obstructed(factory: Factory, jobs: Sequence[RoomJob], furniture: Sequence[Se
 
 
 def views_apart(
-    factory: Factory, truth: Rooms, train: Mapping[str, Arrangement], jobs: Mapping[str, RoomJob], features_of: Features
+    factory: Factory,
+    truth: list[Arrangement],
+    train: list[Arrangement],
+    jobs: Mapping[str, RoomJob],
+    examples: Mapping[str, Example],
+    features_of: Features,
 ) -> dict[str, float]:
-    """Return FID of plan views against the split: of training rooms, as many of each type, also finished, and of what is made on the same floors; rooms and jobs by name."""
-    from pipeline.experiments.realism import alike
-    from pipeline.metrics.two_samples import frechet
-
-    real, floors = alike(np.random.default_rng(factory.seed), truth, list(train.values()), 1)[0]
+    """Return FID of plan views against the split: of training rooms, as many of each type, also finished, and of what is made on the same floors; jobs and examples by name."""
+    real, floors = alike(np.random.default_rng(factory.seed), truth, train, 1)[0]
     own = [jobs[room.name] for room in floors]
     sets = {"train": floors}
-    as_real = {"train, finished": finished(factory, drafts_of_real(factory, own, [room.name for room in floors]))}
-    for name, furniture in {**as_real, **furnish_rooms(factory, own, {})}.items():
-        rooms = zip(rooms_of(own, furniture), floors, strict=True)
+    as_real = {"train, finished": finished(factory, drafts_of_real(factory, own, [examples[room.name] for room in floors]))}
+    for name, made in {**as_real, **furnish_rooms(factory, own, defaultdict(float))}.items():
+        rooms = zip(arrangements(own, made), floors, strict=True)
         sets[name] = [replace(room, openings=floor.openings) for room, floor in rooms if room.categories]
     return {name: frechet(features_of(real), features_of(rooms)) for name, rooms in sets.items()}
 
 
-def jobs_of(source: Mapping[str, Sequence[Row]], split: str) -> dict[str, RoomJob]:
+def jobs_of(split: str) -> dict[str, RoomJob]:
     """Return the jobs of a split's rooms by the name `scene_id/room_id`."""
-    from pipeline import taxonomy
-    from pipeline.experiments.rooms import FIRST, test_rooms
-
+    source = {t.name: tables.read(ROOT / "data" / "tables" / f"{t.name}.parquet", t) for t in (SCENES, ROOMS, OPENINGS)}
     jobs = test_rooms(source, split, taxonomy.load().layout_types)
-    rows = [source["rooms"][job.index - FIRST] for job in jobs]
-    return {f"{row['scene_id']}/{row['room_id']}": job for job, row in zip(jobs, rows, strict=True)}
+    return {f"{source['rooms'][job.index - FIRST]['scene_id']}/{job.room_id}": job for job in jobs}
 
 
-def furnished(split: str) -> dict[str, Arrangement]:
-    """Return the rooms of a split that are furnished, by name; furniture alone."""
-    from pipeline.metrics.relations import furniture
-    from pipeline.relations import split as splits
-
-    rooms = (furniture(room) for room in splits.rooms_of(ROOT / "data" / "tables", split) if room.layout_type)
-    return {room.name: room for room in rooms if room.categories}
-
-
-def print_rates(comparison: Mapping[str, Any], seeds: int) -> None:
+def print_rates(comparison: Mapping[str, Any], seeds: int = 1) -> None:
     """Print relation rates and objects a room, of all sets."""
     for rule, rates in comparison["rates"].items():
         own = max(rates["real"]["rate"], 1e-9)
@@ -186,62 +159,48 @@ def print_constraints(rates: Mapping[str, Any], views: Mapping[str, Sequence[flo
         print(f"  {name:10s} FID {having:.2f} against {without:.2f} ({having / without - 1:+.1%}); rates that fall most: {said}")
 
 
-def print_floors(train: Mapping[str, Arrangement]) -> None:
+def print_floors(train: Sequence[Arrangement]) -> None:
     """Print the floors of training rooms beside what the manifest says of them."""
-    from pipeline import taxonomy
-
     print(f"floors of training rooms [m2]: percentiles {LEAST}, 50 and 90; `part`")
     for kind in taxonomy.load().functions.values():
-        areas = [room.area for room in train.values() if room.layout_type == kind]
+        areas = [room.area for room in train if room.layout_type == kind]
         print(f"  {kind:20s} " + "   ".join(f"{a:5.1f}" for a in np.percentile(areas, [LEAST, 50, 90])), taxonomy.load().layouts[kind].part)
 
 
 def main(count: int, seeds: int) -> None:
     """Furnish, measure, print."""
-    from pipeline import params, tables
-    from pipeline.experiments.realism import embeddings
-    from pipeline.experiments.rooms import spread
-    from pipeline.homes.factory import load_factory
-    from pipeline.metrics.layout_features import features
-    from pipeline.metrics.relations import compare
-    from pipeline.metrics.two_samples import forest_accuracy
-    from pipeline.metrics.views import features_once
-    from pipeline.relations import files
-    from schemas.openings import OPENINGS
-    from schemas.rooms import ROOMS
-    from schemas.scenes import SCENES
-
     tree, folder = params.read(ROOT / "params.yaml"), ROOT / "data" / "tables"
-    source = {t.name: tables.read(folder / f"{t.name}.parquet", t) for t in (SCENES, ROOMS, OPENINGS)}
-    real, train, floors, named = furnished(SPLIT), furnished("train"), jobs_of(source, "train"), jobs_of(source, SPLIT)
-    chosen = spread([name for name in named if name in real], count or len(named))
-    jobs, truth = [named[name] for name in chosen], [replace(real[name], name=str(named[name].index)) for name in chosen]
-    sets: dict[str, Rooms] = {"real": truth * seeds}
-    accuracies: dict[str, list[float]] = {}
-    views: dict[str, list[float]] = {}
-    seconds: dict[str, float] = {}
+    real, train = (furnished(rooms_of(folder, split)) for split in (SPLIT, "train"))
+    named, floors, sets_read = jobs_of(SPLIT), jobs_of("train"), read_sets(ROOT, 10_000)
+    examples = {e.key: e for e in (*sets_read.train, *sets_read.test)}
+    truth = [replace(room, name=str(named[room.name].index)) for room in spread(real, count or len(real))]
+    chosen = [room.name for room in spread(real, count or len(real))]
+    jobs, names = [named[name] for name in chosen], [room.name for room in truth]
+    sets = {"real": truth * seeds}
+    accuracies: dict[str, list[float]] = defaultdict(list)
+    views: dict[str, list[float]] = defaultdict(list)
+    seconds: dict[str, float] = defaultdict(float)
     ways: dict[str, str] = {}
-    features_of, names = features_once(embeddings("")["plan-view net"]), [room.name for room in truth]
+    features_of = features_once(embeddings("")["plan-view net"])
     for seed in range(seeds):
         factory = load_factory(ROOT, tree, seed)
-        for name, fid in views_apart(factory, truth, train, floors, features_of).items():
-            views.setdefault(name, []).append(fid)
+        for name, fid in views_apart(factory, truth, train, floors, examples, features_of).items():
+            views[name].append(fid)
         every = furnish_rooms(factory, jobs, seconds)
-        as_real = {"real": [draft.placements for draft in drafts_of_real(factory, jobs, chosen)]}
-        ways = {name: obstructed(factory, jobs, own) for name, own in {**as_real, **every}.items()}
+        as_real = [draft.placements for draft in drafts_of_real(factory, jobs, [examples[name] for name in chosen])]
+        ways = {name: obstructed(factory, jobs, own) for name, own in {"real": as_real, **every}.items()}
         for name, own in every.items():
-            rooms = rooms_of(jobs, own)
+            rooms = arrangements(jobs, own)
             sets.setdefault(name, []).extend(rooms)
-            accuracies.setdefault(name, []).append(forest_accuracy(seed, features(truth), features(rooms), names, names)["rate"])
+            accuracies[name].append(forest_accuracy(seed, features(truth), features(rooms), names, names)["rate"])
     comparison = compare(np.random.default_rng(0), sets, files.load(folder / "relations.json"))
     print(f"{len(jobs)} rooms of split {SPLIT}, {seeds} seeds; share of cases in which it holds, and of the real share: {', '.join(sets)}")
     print_rates(comparison, seeds)
     print("SCA of a random forest on layout features")
     for name, rates in accuracies.items():
         print(f"  {name:20s} {np.mean(rates):.3f} +- {np.std(rates):.3f}")
-    print(
-        "FID of plan views, on training floors: " + ", ".join(f"{k} {np.mean(v):.2f} ({min(v):.2f}-{max(v):.2f})" for k, v in views.items())
-    )
+    said = ", ".join(f"{k} {np.mean(v):.2f} ({min(v):.2f}-{max(v):.2f})" for k, v in views.items())
+    print(f"FID of plan views, on training floors: {said}")
     print_constraints(comparison["rates"], views)
     print("R_acoll, paper's boxes / real sweeps: " + ", ".join(f"{name} {said}" for name, said in ways.items()))
     print("CPU ms a room: " + ", ".join(f"{k} {1000 * v / len(jobs) / seeds:.1f}" for k, v in seconds.items()))
@@ -249,7 +208,6 @@ def main(count: int, seeds: int) -> None:
 
 
 if __name__ == "__main__":
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
     if not (ROOT / "models" / "denoiser.safetensors").is_file():
         sys.exit("sfgen: there are no trained weights; type `make run` first")
     main(*(int(v) for v in (*sys.argv[1:], *("0", "3")[len(sys.argv) - 1 :])))

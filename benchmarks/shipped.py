@@ -7,23 +7,23 @@ rooms. The 32 homes of `make run` hold too few rooms for a steady figure: give a
 
 import os
 import sys
+from collections import defaultdict
 from pathlib import Path
 
-import numpy as np
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 
-ROOT = Path(__file__).resolve().parents[1]
+import numpy as np
+from rooms import ROOT, print_rates
+
+from pipeline.experiments.realism import alike, embeddings, furnished, layout_figures, shipped_rooms
+from pipeline.metrics.relations import compare
+from pipeline.metrics.views import compare_views, features_once
+from pipeline.relations import files
+from pipeline.relations.split import rooms_of
 
 
 def main(dataset: Path, draws: int) -> None:
     """Draw, measure, print."""
-    from pipeline.experiments.realism import alike, embeddings, furnished, shipped_rooms
-    from pipeline.metrics.layout_features import features
-    from pipeline.metrics.relations import compare
-    from pipeline.metrics.two_samples import forest_accuracy, frechet, kernel_distance, linear_accuracy
-    from pipeline.metrics.views import features_once
-    from pipeline.relations import files
-    from pipeline.relations.split import rooms_of
-
     tables = ROOT / "data" / "tables"
     real, train = (furnished(rooms_of(tables, split)) for split in ("test", "train"))
     shipped = shipped_rooms(dataset)
@@ -31,35 +31,24 @@ def main(dataset: Path, draws: int) -> None:
     print(
         f"{len(shipped)} rooms of {dataset}, {len(real)} of the test split, {draws} draws of pairs of like type and area; sd over the draws"
     )
-    figures: dict[str, list[float]] = {}
+    figures: dict[str, list[float]] = defaultdict(list)
     for seed in range(draws):
         rng = np.random.default_rng(seed)
         one, made = alike(rng, real, shipped, 1)[0]
-        floor = alike(rng, one, train, 1)[0]
-        for name, (own, other) in {"shipped": (one, made), "train": floor}.items():
-            names = [room.name for room in own], [room.name for room in other]
-            views = embed(own), embed(other)
-            for figure, value in (
-                ("rooms", len(own)),
-                ("FID", frechet(*views)),
-                ("KID", kernel_distance(rng, *views)["mean"]),
-                ("SCA of the forest", forest_accuracy(seed, features(own), features(other), *names)["rate"]),
-                ("SCA on plan views", linear_accuracy(seed, *views, *names)["rate"]),
-            ):
-                figures.setdefault(f"{figure}, {name}", []).append(value)
+        for name, (own, other) in {"shipped": (one, made), "train": alike(rng, one, train, 1)[0]}.items():
+            views = compare_views(rng, seed, embed, own, {name: other})[name]
+            figures[f"rooms, {name}"].append(len(own))
+            figures[f"FID, {name}"].append(views["fid"])
+            figures[f"KID, {name}"].append(views["kid"]["mean"])
+            figures[f"SCA on plan views, {name}"].append(views["sca"]["rate"])
+            figures[f"SCA of the forest, {name}"].append(layout_figures(seed, {name: (own, other)}, {})["made"][name]["rate"])
     for name, values in sorted(figures.items()):
         print(f"  {name:28s} {np.mean(values):8.4f} +- {np.std(values):.4f}")
-    rates = compare(np.random.default_rng(0), {"real": real, "train": train, "shipped": shipped}, files.load(tables / "relations.json"))[
-        "rates"
-    ]
-    print("share of cases in which it holds: real, train, shipped; shipped of real")
-    for name, of in rates.items():
-        in_test, in_train, in_shipped = (float(of[key]["rate"]) for key in ("real", "train", "shipped"))
-        print(
-            f"  {name:42s} {in_test:.3f}  {in_train:.3f}  {in_shipped:.3f}   {in_shipped / max(in_test, 1e-9):.2f}   n {of['shipped']['n']}"
-        )
+    print("share of cases in which it holds, and of the real share: real, train, shipped")
+    print_rates(
+        compare(np.random.default_rng(0), {"real": real, "train": train, "shipped": shipped}, files.load(tables / "relations.json"))
+    )
 
 
 if __name__ == "__main__":
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
     main(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "data" / "shards", int(sys.argv[2]) if len(sys.argv) > 2 else 6)

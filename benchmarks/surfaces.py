@@ -20,13 +20,13 @@ from trimesh.triangles import closest_point
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from pipeline import taxonomy  # noqa: E402
-from pipeline.card import Category  # noqa: E402
-from pipeline.entities.asset import Asset, Link  # noqa: E402
-from pipeline.entities.files import load_asset  # noqa: E402
-from pipeline.sources.meshes.mesh_solids import outside  # noqa: E402
-from pipeline.sources.meshes.reach import make_reach_test  # noqa: E402
-from pipeline.sources.meshes.touching import OVER  # noqa: E402
+from pipeline import taxonomy
+from pipeline.card import Category
+from pipeline.entities.asset import Asset, Link
+from pipeline.entities.files import load_asset
+from pipeline.sources.meshes.mesh_solids import outside
+from pipeline.sources.meshes.reach import make_reach_test
+from pipeline.sources.meshes.touching import OVER
 
 Floats = NDArray[np.float64]
 Reached = Callable[[Floats], NDArray[np.bool_]]

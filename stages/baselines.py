@@ -14,7 +14,7 @@ from tqdm import tqdm
 
 from pipeline import params
 from pipeline.baselines import ours
-from pipeline.baselines.furnish import BASELINES, Baselines
+from pipeline.baselines.furnish import BASELINES, furnish
 from pipeline.baselines.job import NETS, Job, open_job, trainer
 from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.training import Trainer, train
@@ -39,14 +39,13 @@ def main(root: Path) -> None:
     job = open_job(root, settings)
     trained = {name: trained_net(name, job, settings, tree["seed"]) for name in NETS}
     nets = {name: each.average for name, each in trained.items()}
-    baselines = Baselines(nets, job.scaling, settings, job.layouts, job.opens, tree["seed"])
-    makers = {name: partial(baselines.furnish, name) for name in BASELINES}
+    makers = {name: partial(furnish, name, nets[net].eval(), job, settings, tree["seed"]) for name, net in BASELINES.items()}
     layout = params.section(TrainSettings, tree, "train")
     own = ours.train_model(
         root, folder, replace(layout, start="scratch"), params.section(SampleSettings, tree, "sample"), settings.seconds, tree["seed"]
     )
-    makers |= {"ours": partial(ours.sample_unguided, own.sampler), "ours_guided": partial(ours.sample_guided, own.sampler)}
-    cases = cases_of(job.tables, metrics.split, job.layouts, job.scaling.classes, settings.slots)
+    makers |= {"ours": partial(ours.furnish, own.sampler, "none"), "ours_guided": partial(ours.furnish, own.sampler, "heuristic")}
+    cases = cases_of(getattr(job.sets, metrics.split), job.scaling.classes)
     opens = dict(zip(job.scaling.classes, job.opens.tolist(), strict=True))
     comparison = compare_models(makers, cases, opens, settings, tree["seed"], files.load(root / "data/tables/relations.json"))
     cost = {name: report(each) for name, each in trained.items()} | {"ours": own.cost}

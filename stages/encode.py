@@ -17,13 +17,10 @@ from pipeline import params, seeds, tables
 from pipeline.entities.files import load_asset
 from pipeline.entry import run
 from pipeline.errors import ContentError
-from pipeline.latents.fidelity import rebuilt, two_samples
-from pipeline.latents.ranking import self_ranking
-from pipeline.latents.settings import EncodeSettings
+from pipeline.latents.fidelity import fidelity, self_ranking
 from pipeline.latents.surface import surface_points, triangles
 from pipeline.latents.training import encode, init_vae, train
-from pipeline.latents.vae import PointVae, chamfer
-from pipeline.latents.weights import load_vae, save_vae
+from pipeline.latents.vae import EncodeSettings, PointVae, chamfer, load_vae, save_vae
 from pipeline.manifest import write_json
 from pipeline.rendering.surface_colour import finish_of
 from schemas.assets import ASSETS, LATENTS
@@ -62,7 +59,7 @@ def main(root: Path) -> None:
     for row in rows:
         served.setdefault((row["source"], row["source_id"]), set()).add(row["category"])
     counts = {"shapes": len(order), "assets": len(rows)}
-    report = {**counts, **rebuilt(net.cpu(), first), "chamfer_two_samples": round(two_samples(first, second), 6)}
+    report = counts | fidelity(net.cpu(), first, second)
     for name, model in (("trained", net), ("untrained", untrained)):
         stored, queries = (encode(model, cloud, device).numpy() for cloud in (first, second))
         for part, asked in (("held_out", held_out), ("all", list(range(len(order))))):

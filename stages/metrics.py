@@ -10,7 +10,7 @@ from pipeline import params, seeds, tables, taxonomy
 from pipeline.entry import run
 from pipeline.execution import cores, map_jobs, track
 from pipeline.experiments import paper_tables
-from pipeline.experiments.dataset import dataset_figures, reject_counts
+from pipeline.experiments.dataset import dataset_figures
 from pipeline.experiments.document import write_report
 from pipeline.experiments.prompt_file import read_prompts
 from pipeline.experiments.prompts import evaluate_prompts
@@ -62,7 +62,7 @@ def main(root: Path) -> None:
     write_json(root / "metrics" / "metrics.json", figures)
     for name, text in paper_tables.curves(figures).items():
         write_bytes(root / "plots" / f"{name}.csv", text.encode())
-    write_report(root, figures, reject_counts(root), factory, settings)
+    write_report(root, figures, factory, settings)
 
 
 def realism(root: Path, seed: int, settings: MetricsSettings, trials: Mapping[str, Trial]) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from pipeline import params
 from pipeline.diffusion.checkpoint import save_checkpoint, save_weights
 from pipeline.diffusion.inventory import fit
 from pipeline.diffusion.job import CHECKPOINT, WEIGHTS, Job, holdings, open_job
-from pipeline.diffusion.livelog import LiveLog
+from pipeline.diffusion.livelog import live_log
 from pipeline.diffusion.process_group import ProcessGroup, spawn_group
 from pipeline.diffusion.rooms import Sets
 from pipeline.diffusion.settings import TrainSettings
@@ -59,7 +59,7 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
         return validation(trainer, job.checked)
 
     by_level: dict[str, dict[str, float]] = {}
-    with LiveLog(root, resume=trainer.done) as log, tqdm(total=trainer.total, initial=trainer.done, desc="train", unit="step") as bar:
+    with live_log(root, trainer.done) as log, tqdm(total=trainer.total, initial=trainer.done, desc="train", unit="step") as bar:
         for step in train(trainer, job.data, save):
             bar.update()
             last = step.done == trainer.total
@@ -67,7 +67,7 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
                 by_level = validate()
             if step.done % 10 == 0 or last:
                 bar.set_postfix(loss=f"{step.loss:.3f}", geometry=f"{step.geometry:.3f}", refresh=False)
-                log.step(step, by_level)
+                log(step, by_level)
     inventory = fit(job.inventory, holdings(job.sets.train, job.header), trainer.settings.inventory, trainer.seed)
     save_weights(root / WEIGHTS, job.header, {"denoiser": trainer.average, "inventory": inventory})
     write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or validate()))

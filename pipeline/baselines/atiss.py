@@ -10,7 +10,6 @@ import math
 import torch
 from torch import Tensor, nn
 
-from pipeline.baselines import logistic_mixture as logistics
 from pipeline.baselines.rooms import BOX, Furniture, Outlines
 from pipeline.baselines.scaling import PLACE, SIZE, Found, Scaling
 from pipeline.baselines.settings import BaselineSettings
@@ -18,6 +17,8 @@ from pipeline.baselines.transformer import Block, FloorEncoder, sines
 
 MIXTURES = 10
 RATES = 16  # sines per attribute
+BIN = 2 / 255  # width of a bin of [-1, 1]
+NARROWEST = -6.0  # least log scale
 ATTRIBUTES = 7  # centre 3, yaw 1, size 3, all in [-1, 1]
 
 
@@ -84,11 +85,39 @@ def loss(net: Autoregressive, rooms: Outlines, things: Furniture, rng: torch.Gen
     more = ~rooms_done
     kind, value, code = kind[more], values[row, column][more], code[more]
     likely = [
-        logistics.log_likelihood(net.mixtures(net.place, code, kind, value[:, :0]), value[:, :3]).sum(-1),
-        logistics.log_likelihood(net.mixtures(net.yaw, code, kind, value[:, :3]), value[:, 3:4]).sum(-1),
-        logistics.log_likelihood(net.mixtures(net.size, code, kind, value[:, :4]), value[:, 4:]).sum(-1),
+        log_likelihood(net.mixtures(net.place, code, kind, value[:, :0]), value[:, :3]).sum(-1),
+        log_likelihood(net.mixtures(net.yaw, code, kind, value[:, :3]), value[:, 3:4]).sum(-1),
+        log_likelihood(net.mixtures(net.size, code, kind, value[:, :4]), value[:, 4:]).sum(-1),
     ]
     return (total.sum() - torch.stack(likely).sum()) / len(kinds)
+
+
+def log_likelihood(parameters: Tensor, value: Tensor) -> Tensor:
+    """Return the log of the chance under mixtures of discretised logistics (Salimans et al. 2017) (...) of the bin about `value` (...) in [-1, 1]; the outermost bins reach to infinity.
+
+    `parameters` (..., 3, K): logits of the components, their means, their log scales.
+    """
+    weight, mean, scale = _parts(parameters)
+    off = value[..., None] - mean
+    upper = torch.sigmoid((off + BIN / 2) * torch.exp(-scale))
+    lower = torch.sigmoid((off - BIN / 2) * torch.exp(-scale))
+    upper = torch.where(value[..., None] > 1 - BIN / 2, torch.ones_like(upper), upper)
+    lower = torch.where(value[..., None] < -1 + BIN / 2, torch.zeros_like(lower), lower)
+    return torch.logsumexp(weight + (upper - lower).clamp_min(1e-10).log(), -1)
+
+
+def draw(parameters: Tensor, rng: torch.Generator) -> Tensor:
+    """Draw values (...) in [-1, 1] from mixtures (..., 3, K)."""
+    weight, mean, scale = _parts(parameters)
+    chosen = torch.multinomial(weight.exp().flatten(0, -2), 1, generator=rng).view(*weight.shape[:-1], 1)
+    even = torch.rand(weight.shape[:-1], generator=rng).clamp(1e-5, 1 - 1e-5)
+    mean, scale = mean.gather(-1, chosen)[..., 0], scale.gather(-1, chosen)[..., 0]
+    return (mean + scale.exp() * torch.logit(even)).clamp(-1, 1)
+
+
+def _parts(parameters: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    weight, mean, scale = parameters.unbind(-2)
+    return weight.log_softmax(-1), mean, scale.clamp_min(NARROWEST)
 
 
 @torch.no_grad()
@@ -106,9 +135,9 @@ def sample(net: Autoregressive, rooms: Outlines, rng: torch.Generator) -> Found:
         if not going.any():
             break
         kind = chosen.clamp_max(classes - 1)
-        place = logistics.draw(net.mixtures(net.place, code, kind, values[:, 0, :0]), rng)
-        yaw = logistics.draw(net.mixtures(net.yaw, code, kind, place), rng)
-        size = logistics.draw(net.mixtures(net.size, code, kind, torch.cat([place, yaw], -1)), rng)
+        place = draw(net.mixtures(net.place, code, kind, values[:, 0, :0]), rng)
+        yaw = draw(net.mixtures(net.yaw, code, kind, place), rng)
+        size = draw(net.mixtures(net.size, code, kind, torch.cat([place, yaw], -1)), rng)
         kinds[:, k], there[:, k], values[:, k] = kind, going, torch.cat([place, yaw, size], -1)
         boxes[:, k] = torch.cat([place, size, (math.pi * yaw).cos(), (math.pi * yaw).sin()], -1)
     return Found(there, kinds, net.scaling.metric(boxes))

@@ -5,18 +5,46 @@ a penalty on overlaps of the expected boxes. In place of their convolutional net
 transformer in which slots are alike; one net serves all room types, told the type.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
+from typing import NamedTuple
 
 import torch
 from torch import Tensor, nn
 
 from pipeline.baselines.rooms import BOX, Furniture, Outlines
 from pipeline.baselines.scaling import Scaling
-from pipeline.baselines.schedule import Levels
 from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.transformer import Block, FloorEncoder, sines
 
 Guide = Callable[[Tensor, int, float], Tensor]  # mean (B, N, D), level t, variance of the step -> what is added to the mean
+
+
+class Levels(NamedTuple):
+    """DDPM's levels (Ho et al. 2020): linear beta from 1e-4 to 0.02 over T = 1000.
+
+    Level t in 1..T, index 0 is clean data, (T + 1,) each: x_t = alpha x_0 + sigma eps, alpha^2 + sigma^2 = 1.
+    `variance` is that of q(x_{t-1} | x_t, x_0), the paper's Sigma: (1 - abar_{t-1}) / (1 - abar_t) beta_t.
+    """
+
+    alpha: Tensor
+    sigma: Tensor
+    variance: Tensor
+
+    def of(self, t: Tensor) -> tuple[Tensor, Tensor]:
+        """Return alpha and sigma (B, 1, 1) at levels t (B,)."""
+        return self.alpha[t][:, None, None], self.sigma[t][:, None, None]
+
+    @classmethod
+    def linear(cls, timesteps: int) -> Levels:
+        """Return T levels; for T other than 1000 beta is scaled so that the end is as noisy."""
+        beta = torch.linspace(1e-4, 0.02, timesteps, dtype=torch.float64) * 1000 / timesteps
+        beta = torch.cat([torch.zeros(1, dtype=torch.float64), beta.clamp_max(0.999)])
+        kept = torch.cumprod(1 - beta, 0)
+        variance = torch.zeros_like(beta)
+        variance[1:] = (1 - kept[:-1]) / (1 - kept[1:]) * beta[1:]
+        return cls(*(v.float() for v in (kept.sqrt(), (1 - kept).sqrt(), variance)))
 
 
 class Denoiser(nn.Module):
@@ -25,7 +53,7 @@ class Denoiser(nn.Module):
     def __init__(self, scaling: Scaling, layouts: int, settings: BaselineSettings) -> None:
         super().__init__()
         width = settings.width
-        self.scaling, self.settings = scaling, settings
+        self.scaling, self.settings, self.levels = scaling, settings, Levels.linear(settings.timesteps)
         self.floor = FloorEncoder(width, layouts, scaling.high[0])
         self.level = nn.Sequential(nn.Linear(64, width), nn.SiLU(), nn.Linear(width, width))
         self.enter = nn.Sequential(nn.Linear(scaling.channels, width), nn.GELU(), nn.Linear(width, width))
@@ -47,32 +75,32 @@ def clean(raw: Tensor, x: Tensor, alpha: Tensor | float, sigma: Tensor | float) 
     return alpha * x - sigma * raw
 
 
-def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, rng: torch.Generator) -> Tensor:
+def loss(net: Denoiser, rooms: Outlines, things: Furniture, rng: torch.Generator) -> Tensor:
     """Return DiffuScene's loss of a batch: denoising, and overlaps of what is expected."""
-    x0, t, noise, x = add_noise(net, levels, things, rng)
+    x0, t, noise, x = add_noise(net, things, rng)
     raw = net(x, t, net.floor(rooms))
-    total = denoising(net, levels, raw, x0, noise, t)
+    total = denoising(net, raw, x0, noise, t)
     if not net.settings.iou_weight:
         return total
-    alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
-    expected = clean(raw, x, alpha, sigma)
-    return total + net.settings.iou_weight * (levels.alpha[t] ** 2 * upright_overlap(net.scaling, expected)).mean()
+    alpha, sigma = net.levels.of(t)
+    return total + net.settings.iou_weight * (alpha[:, 0, 0] ** 2 * upright_overlap(net.scaling, clean(raw, x, alpha, sigma))).mean()
 
 
-def add_noise(net: Denoiser, levels: Levels, things: Furniture, rng: torch.Generator) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+def add_noise(net: Denoiser, things: Furniture, rng: torch.Generator) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Draw levels t (B,), uniform in 1..T, and noise; return x0, t, eps, x_t."""
     x0 = net.scaling.encode(things)
     t = torch.randint(1, net.settings.timesteps + 1, (len(x0),), generator=rng)
     noise = torch.randn(x0.shape, generator=rng)
-    return x0, t, noise, levels.alpha[t][:, None, None] * x0 + levels.sigma[t][:, None, None] * noise
+    alpha, sigma = net.levels.of(t)
+    return x0, t, noise, alpha * x0 + sigma * noise
 
 
-def denoising(net: Denoiser, levels: Levels, raw: Tensor, x0: Tensor, noise: Tensor, t: Tensor) -> Tensor:
+def denoising(net: Denoiser, raw: Tensor, x0: Tensor, noise: Tensor, t: Tensor) -> Tensor:
     """Return the mean squared error of the prediction: boxes, classes and latents weigh the same, whatever their numbers of channels.
 
     An error of v weighs alpha^2, as DiffuScene has it: it is then the error of eps.
     """
-    alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
+    alpha, sigma = net.levels.of(t)
     error = alpha * (raw - alpha * noise + sigma * x0)
     boxes, classes, latents = (error**2).split([BOX, net.scaling.empty + 1 - BOX, net.scaling.channels - net.scaling.empty - 1], -1)
     total: Tensor = boxes.mean() + classes.mean() + latents.mean()
@@ -104,7 +132,7 @@ def levels_of(levels: Levels, steps: int) -> list[int]:
 @torch.no_grad()
 def sample(net: Denoiser, rooms: Outlines, rng: torch.Generator, guide: Guide | None = None) -> Tensor:
     """Return x0 (B, N, D) after DDPM's steps from level to level: x_s ~ N(mean + what the guide adds, variance), as q(x_s | x_t, x0) has them."""
-    levels, floor, s = Levels.linear(net.settings.timesteps), net.floor(rooms), net.settings
+    levels, floor, s = net.levels, net.floor(rooms), net.settings
     stops = levels_of(levels, s.steps)
     x = torch.randn((len(rooms), s.slots, net.scaling.channels), generator=rng)
     for t, following in zip(stops, [*stops[1:], 0], strict=True):

@@ -13,7 +13,7 @@ from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.inventory import fit, initial_inventory
 from pipeline.diffusion.job import holdings, load, rooms_of
 from pipeline.diffusion.sampling import Sampler
-from pipeline.diffusion.settings import SampleSettings, TrainSettings
+from pipeline.diffusion.settings import Articulation, SampleSettings, TrainSettings
 from pipeline.diffusion.training import Trainer, train
 
 PROBE = 12  # steps whose cost says how many the seconds hold
@@ -50,15 +50,7 @@ def train_model(root: Path, folder: Path, settings: TrainSettings, sample: Sampl
     return Trained(Sampler.load(weights, sample, seed), cost)
 
 
-def sample_unguided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
-    """Furnish rooms without guidance; a told number is drawn exactly."""
-    return _sample(replace(sampler.baseline(), settings=replace(sampler.baseline().settings, quantity=True)), rooms)
-
-
-def sample_guided(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
-    """Furnish rooms with the articulation guidance, which knows the paper's boxes alone: nothing is retrieved here."""
-    return _sample(replace(sampler, settings=replace(sampler.settings, articulation="heuristic", snap_below=0)), rooms)
-
-
-def _sample(sampler: Sampler, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
+def furnish(sampler: Sampler, articulation: Articulation, rooms: Sequence[RoomContext]) -> list[list[Proposal]]:
+    """Furnish rooms, with a told number drawn exactly; a guidance knows the paper's boxes alone ("heuristic"): nothing is retrieved here."""
+    sampler = replace(sampler, settings=replace(sampler.settings, quantity=True, articulation=articulation, snap_below=0))
     return sampler.sample_rooms(rooms, [(k, 0, 0) for k in range(len(rooms))])

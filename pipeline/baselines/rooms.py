@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from pipeline.diffusion.batch import Rows
 from pipeline.diffusion.codec import LATENT
 from pipeline.diffusion.floor import KINDS, Floor
 from pipeline.diffusion.rooms import Example
@@ -18,7 +19,7 @@ BOX = 8  # centre 3, size 3 [m], cos, sin of the yaw
 
 
 @dataclass(frozen=True, slots=True)
-class Outlines:
+class Outlines(Rows):
     """R rooms to furnish: `points` (R, P, 4), places on the walls [m] and inward normals; `layout` (R,) index of the room type.
 
     As with the peers, a room is its outline: they are told neither of doors nor of windows.
@@ -30,10 +31,6 @@ class Outlines:
     def __len__(self) -> int:
         return len(self.layout)
 
-    def rows(self, index: Tensor) -> Outlines:
-        """Take some rooms."""
-        return Outlines(self.points[index], self.layout[index])
-
     def turned(self, quarters: Tensor) -> Outlines:
         """Turn each room (R,) by so many quarters."""
         turns = quarter_turns(quarters).to(self.points)
@@ -41,16 +38,12 @@ class Outlines:
 
 
 @dataclass(frozen=True, slots=True)
-class Furniture:
+class Furniture(Rows):
     """The slots of R rooms: `classes` (R, N), C for empty; `boxes` (R, N, 8) with the boxes' centres [m]; `latents` (R, N, 32)."""
 
     classes: Tensor
     boxes: Tensor
     latents: Tensor
-
-    def rows(self, index: Tensor) -> Furniture:
-        """Take some rooms."""
-        return Furniture(*(getattr(self, f.name)[index] for f in fields(self)))
 
     def turned(self, quarters: Tensor) -> Furniture:
         """Turn each room (R,) by so many quarters."""

@@ -18,7 +18,6 @@ from pipeline.baselines.boxes import boxes_of, extend_front, mates, overlaps
 from pipeline.baselines.diffuscene import Denoiser, add_noise, clean, denoising
 from pipeline.baselines.rooms import BOX, Furniture, Outlines
 from pipeline.baselines.scaling import Scaling
-from pipeline.baselines.schedule import Levels
 from pipeline.baselines.settings import BaselineSettings
 
 
@@ -78,18 +77,18 @@ class Constraints:
         return variance * self.descent(mean)
 
 
-def loss(net: Denoiser, levels: Levels, rooms: Outlines, things: Furniture, opens: Tensor, rng: torch.Generator) -> Tensor:
+def loss(net: Denoiser, rooms: Outlines, things: Furniture, rng: torch.Generator, opens: Tensor) -> Tensor:
     """Return eq. denoising_loss: || (eps - lambda Sigma g) - eps_theta ||^2, with g = -grad phi at the expected x0.
 
     The number asked for is the room's own. The guided noise is larger where the descent is: x0 = (x_t - sigma eps) / alpha
     moves along -sigma / alpha times it, so eps minus lambda Sigma g means that x0 moves along g, down the penalty.
     """
-    _, t, noise, x = add_noise(net, levels, things, rng)
+    _, t, noise, x = add_noise(net, things, rng)
     raw = net(x, t, net.floor(rooms))
-    alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
+    alpha, sigma = net.levels.of(t)
     expected = clean(raw.detach(), x, alpha, sigma).clamp(-1, 1)
     counts, s = (things.classes < len(net.scaling.classes)).sum(1), net.settings
     learnt = replace(s, quantity_scale=s.train_quantity_scale, articulation_scale=s.train_articulation_scale)
-    shift = levels.variance[t][:, None, None] * Constraints(net.scaling, learnt, counts, opens).descent(expected)
+    shift = net.levels.variance[t][:, None, None] * Constraints(net.scaling, learnt, counts, opens).descent(expected)
     guided = noise - shift
-    return denoising(net, levels, raw, (x - sigma * guided) / alpha, guided, t)
+    return denoising(net, raw, (x - sigma * guided) / alpha, guided, t)

@@ -12,6 +12,7 @@ from torch import Tensor, nn
 from pipeline import seeds
 from pipeline.baselines.rooms import Furniture, Outlines
 from pipeline.baselines.settings import BaselineSettings
+from pipeline.diffusion.training import follow
 
 Loss = Callable[[nn.Module, Outlines, Furniture, torch.Generator], Tensor]
 
@@ -50,9 +51,7 @@ class Trainer:
         for group in self.adam.param_groups:
             group["lr"] = s.learning_rate * 0.5 * (1 + math.cos(math.pi * min(self.spent / s.seconds, 1.0)))
         self.adam.step()
-        decay = min(s.ema, (1 + self.done) / (10 + self.done))
-        with torch.no_grad():
-            torch._foreach_lerp_(list(self.average.parameters()), list(self.net.parameters()), 1 - decay)
+        follow(self.average, self.net, s.ema, self.done)
         self.done += 1
         self.spent += time.process_time() - start
         return Step(self.done, self.spent, float(value.detach()))

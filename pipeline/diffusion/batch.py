@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Self
 
 import numpy as np
 import torch
@@ -17,8 +18,22 @@ from pipeline.diffusion.rooms import SWEEPS, Example
 BUCKETS = (4, 8, 12, 16, 24, 32)  # slots that the rooms of a batch are padded to
 
 
+class Rows:
+    """Tensors of B rooms each, as the fields of a dataclass."""
+
+    __slots__ = ()
+
+    def to(self, device: torch.device) -> Self:
+        """Move all tensors."""
+        return type(self)(*(getattr(self, f.name).to(device) for f in fields(self)))  # type: ignore[arg-type]
+
+    def rows(self, index: Tensor) -> Self:
+        """Take some rooms."""
+        return type(self)(*(getattr(self, f.name)[index] for f in fields(self)))  # type: ignore[arg-type]
+
+
 @dataclass(frozen=True, slots=True)
-class RoomBatch:
+class RoomBatch(Rows):
     """B rooms as the denoiser is told about them; M floor tokens each (see `floor.Floor`).
 
     `layout` (B,) type, `height` (B,) of the ceiling [m].
@@ -36,14 +51,6 @@ class RoomBatch:
     def __len__(self) -> int:
         return len(self.layout)
 
-    def to(self, device: torch.device) -> RoomBatch:
-        """Move all tensors."""
-        return RoomBatch(*(getattr(self, f.name).to(device) for f in fields(self)))
-
-    def rows(self, index: Tensor) -> RoomBatch:
-        """Take some rooms."""
-        return RoomBatch(*(getattr(self, f.name)[index] for f in fields(self)))
-
     def trimmed(self) -> RoomBatch:
         """Drop token places that no room uses. For training, where shapes may vary."""
         return self.first(int(self.mask.sum(1).max()))
@@ -52,8 +59,7 @@ class RoomBatch:
         """Drop all but the first token places of rooms that use no others; real tokens first, in their order."""
         order = (~self.mask).to(torch.uint8).argsort(dim=1, stable=True)[:, :tokens]
         row = torch.arange(len(self), device=order.device)[:, None]
-        taken = {name: getattr(self, name)[row, order] for name in ("ends", "normal", "kind", "hinge", "sill", "mask")}
-        return replace(self, **taken)
+        return replace(self, **{f.name: getattr(self, f.name)[row, order] for f in fields(Floor)})
 
     @property
     def walls(self) -> Tensor:
@@ -62,20 +68,12 @@ class RoomBatch:
 
 
 @dataclass(frozen=True, slots=True)
-class Objects:
+class Objects(Rows):
     """The objects of B rooms: `classes` (B, N), C for padding; `channels` (B, N, 40) normalised; `sweeps` (B, N, K, 2, 3) [m]."""
 
     classes: Tensor
     channels: Tensor
     sweeps: Tensor
-
-    def to(self, device: torch.device) -> Objects:
-        """Move all tensors."""
-        return Objects(self.classes.to(device), self.channels.to(device), self.sweeps.to(device))
-
-    def rows(self, index: Tensor) -> Objects:
-        """Take some rooms."""
-        return Objects(self.classes[index], self.channels[index], self.sweeps[index])
 
     def first(self, slots: int) -> Objects:
         """Take the first slots; objects come first, so none is lost where a room has no more than that."""
@@ -89,11 +87,9 @@ def bucket_of(counts: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def room_batch(floors: Sequence[Floor], layouts: Sequence[int], heights: Sequence[float]) -> RoomBatch:
     """Stack rooms."""
-    ends, normal, kind, hinge, sill, mask = (
-        torch.from_numpy(np.stack([getattr(f, name) for f in floors])) for name in ("ends", "normal", "kind", "hinge", "sill", "mask")
-    )
-    said = torch.tensor(layouts), torch.tensor(heights, dtype=torch.float32)
-    return RoomBatch(ends, normal, kind, hinge, sill, mask, *said)
+    stacked = [torch.from_numpy(np.stack([getattr(floor, f.name) for floor in floors])) for f in fields(Floor)]
+    stacked += [torch.tensor(layouts), torch.tensor(heights, dtype=torch.float32)]
+    return RoomBatch(*stacked)
 
 
 def collate(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[RoomBatch, Objects]:
@@ -106,7 +102,7 @@ def collate(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[Room
         classes[i, :n] = torch.from_numpy(example.classes)
         channels[i, :n] = codec.normalise(torch.from_numpy(example.continuous).float(), classes[i, :n])
         sweeps[i, :n] = torch.from_numpy(example.sweeps)
-    rooms = room_batch([e.floor for e in examples], [e.layout for e in examples], [e.height for e in examples])
+    rooms = room_batch([e.floor for e in examples], [e.layout for e in examples], [e.context.height for e in examples])
     return rooms, Objects(classes, channels, sweeps)
 
 

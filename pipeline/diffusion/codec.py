@@ -78,31 +78,19 @@ class Codec:
     def proposals(self, x0: Tensor, classes: Tensor, context: RoomContext) -> list[Proposal]:
         """Decode one room, x0 (N, 40) and `classes` (N,), into its objects, in slot order; class C is padding."""
         occupied = classes < self.classes
-        x0, classes, centre = x0[occupied], classes[occupied], context.centre
-        values = self.metric(x0, classes).double().cpu().numpy()
-        return [
-            Proposal(
-                self.norm.classes[label],
-                np.array([row[0] + centre[0], row[1] + centre[1], row[2] + context.elevation]),
-                float(np.arctan2(row[7], row[6])),
-                np.maximum(row[SIZE], 0.02),
-                row[SHAPE].astype(np.float32),
-            )
-            for row, label in zip(values, classes.tolist(), strict=True)
-        ]
+        values = self.metric(x0[occupied], classes[occupied]).double().cpu().numpy()
+        return proposals_of(values, [self.norm.classes[label] for label in classes[occupied].tolist()], context)
 
 
-def continuous_rows(
-    positions: NDArray[np.float64], sizes: NDArray[np.float64], yaws: NDArray[np.float64], latents: NDArray[np.float32]
-) -> NDArray[np.float64]:
-    """Stack objects (n, .) in the room frame into rows (n, 40): position, size [m], cos, sin, latent."""
-    return np.concatenate([positions, sizes, np.cos(yaws)[:, None], np.sin(yaws)[:, None], latents], 1)
-
-
-def class_indices(names: Sequence[str], classes: tuple[str, ...]) -> NDArray[np.int64]:
-    """Return the class index of each category name."""
-    order = {name: i for i, name in enumerate(classes)}
-    return np.array([order[name] for name in names], np.int64)
+def proposals_of(rows: NDArray[np.float64], names: Sequence[str], context: RoomContext) -> list[Proposal]:
+    """Return objects as proposals: `rows` (n, 40) of metres in the room frame, cos, sin and raw latents, and their categories."""
+    origin = np.array([*context.centre, context.elevation])
+    return [
+        Proposal(
+            name, row[POSITION] + origin, float(np.arctan2(row[7], row[6])), np.maximum(row[SIZE], 0.02), row[SHAPE].astype(np.float32)
+        )
+        for row, name in zip(rows, names, strict=True)
+    ]
 
 
 def _round_table(table: NDArray[np.float64]) -> tuple[tuple[float, ...], ...]:

@@ -4,30 +4,24 @@ import os
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import torch
 
-from pipeline import tables, taxonomy
+from pipeline import taxonomy
 from pipeline.diffusion.batch import collate
 from pipeline.diffusion.checkpoint import Header, load_checkpoint, load_weights
 from pipeline.diffusion.codec import Codec, Normalisation
 from pipeline.diffusion.inventory import Holdings, Inventory, counts_of, initial_inventory, room_features
 from pipeline.diffusion.process_group import ProcessGroup
-from pipeline.diffusion.rooms import Example, Sets, layout_weights, sets_of, stacked_classes, stacked_rows, sweeps_by_asset
+from pipeline.diffusion.rooms import SHAPES, TABLES, Example, Sets, layout_weights, read_sets, stacked
 from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.training import Rooms, Trainer
 from pipeline.errors import ContentError
 from pipeline.manifest import digest, sha256_file
-from schemas.assets import ASSET_JOINTS, LATENTS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
 
-INPUTS = {"scenes": SCENES, "rooms": ROOMS, "openings": OPENINGS, "objects": OBJECTS}
 CHECKPOINT = "models/checkpoint/denoiser.safetensors"
 WEIGHTS = "models/denoiser.safetensors"
 RELEASED = "weights/denoiser.safetensors"
@@ -99,28 +93,18 @@ def rooms_of(examples: Sequence[Example], header: Header, device: torch.device) 
 
 def load(root: Path, settings: TrainSettings) -> tuple[Sets, Header]:
     """Read the tables into rooms, and fix what travels with the weights."""
-    words = taxonomy.load()
-    read: dict[str, list[dict[str, Any]]] = {n: tables.read(root / f"data/tables/{n}.parquet", t) for n, t in INPUTS.items()}
-    latents = {r["asset_id"]: np.array(r["latent"], np.float32) for r in tables.read(root / "data/latents/latents.parquet", LATENTS)}
-    sweeps = sweeps_by_asset(tables.read(root / "data/tables/asset_joints.parquet", ASSET_JOINTS))
-    sets = sets_of(read, latents, sweeps, words.names, words.layout_types, settings.slots)
-    if not sets.train:
-        raise ContentError(
-            "data/tables has no furnished room of split train", "raise corpus.houses in params.yaml, or check the rejects table"
-        )
-    norm = Normalisation.of(stacked_rows(sets.train), stacked_classes(sets.train), words.names)
+    words, sets = taxonomy.load(), read_sets(root, settings.slots)
+    norm = Normalisation.of(*stacked(sets.train), words.names)
     return sets, Header(norm, words.layout_types, settings.slots, settings.model, settings.inventory.width)
 
 
 def holdings(examples: Sequence[Example], header: Header) -> Holdings:
     """Return what rooms hold, as the inventory model learns it."""
-    features = np.stack([room_features(e.floor, e.height) for e in examples])
+    features = np.stack([room_features(e.floor, e.context.height) for e in examples])
     layouts = np.array([e.layout for e in examples], np.int64)
     return Holdings(features, layouts, np.stack([counts_of(e.classes, len(header.norm.classes)) for e in examples]))
 
 
 def inputs(root: Path, settings: TrainSettings) -> dict[str, str]:
     """Return the digests of the files that training depends on."""
-    names = [f"data/tables/{n}.parquet" for n in (*INPUTS, "asset_joints")] + ["data/latents/latents.parquet"]
-    names += [RELEASED] if settings.start == "released" else []
-    return {name: sha256_file(root / name) for name in names}
+    return {name: sha256_file(root / name) for name in (*TABLES, SHAPES, *([RELEASED] if settings.start == "released" else []))}

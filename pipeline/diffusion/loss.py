@@ -8,9 +8,9 @@ from torch import Tensor
 from pipeline.diffusion.batch import Objects, RoomBatch
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
 from pipeline.diffusion.constraints import articulated_collision
-from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.relations import boxes_of
 from pipeline.diffusion.schedule import FIRST, LAST, alpha_sigma, lambda_of
+from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import TrainSettings
 
 MOST_SHIFT = 0.1  # largest change of a clean channel that the constraint term may ask for
@@ -51,7 +51,7 @@ def constraint_descent(x0: Tensor, classes: Tensor, codec: Codec, rooms: RoomBat
     return g
 
 
-def denoising_loss(net: Denoiser, rooms: RoomBatch, objects: Objects, drawn: Draw, settings: TrainSettings) -> tuple[Loss, ...]:
+def denoising_loss(net: SetTransformer, rooms: RoomBatch, objects: Objects, drawn: Draw, settings: TrainSettings) -> tuple[Loss, ...]:
     """Return the loss terms of a batch for each pass of the net, the last one being what samplers use.
 
     Eq. 1: || (eps - lambda Sigma g) - eps_theta ||^2, with g the DESCENT -grad phi at the model's own x0 (the printed

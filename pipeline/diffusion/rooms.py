@@ -3,35 +3,45 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.diffusion.codec import CHANNELS, LATENT, class_indices, continuous_rows
+from pipeline import tables, taxonomy
+from pipeline.diffusion.codec import CHANNELS, LATENT
 from pipeline.diffusion.context import RoomContext, RoomOpening
 from pipeline.diffusion.floor import Floor, floor_tokens
+from pipeline.errors import ContentError
+from schemas.assets import ASSET_JOINTS, LATENTS
+from schemas.objects import OBJECTS
+from schemas.openings import OPENINGS
+from schemas.rooms import ROOMS
+from schemas.scenes import SCENES
 
 Row = Mapping[str, Any]
 SWEEPS = 4  # boxes per object
+TABLES = {f"data/tables/{t.name}.parquet": t for t in (SCENES, ROOMS, OPENINGS, OBJECTS, ASSET_JOINTS)}
+SHAPES = "data/latents/latents.parquet"
 
 
 @dataclass(frozen=True, slots=True)
 class Example:
     """One furnished room, n objects, room frame.
 
-    `classes` (n,); `continuous` (n, 40) in metres, cos, sin, raw latents; `sweeps` (n, K, 2, 3) [m], object frame, NaN
-    for none; `height` of the ceiling [m].
+    `layout` is the index of its type; `classes` (n,); `continuous` (n, 40) in metres, cos, sin, raw latents; `sweeps` (n, K, 2, 3) [m],
+    object frame, NaN for none.
     """
 
     key: str
     split: str
     layout: int
+    context: RoomContext
+    floor: Floor
     classes: NDArray[np.int64]
     continuous: NDArray[np.float64]
     sweeps: NDArray[np.float32]
-    floor: Floor
-    height: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +54,21 @@ class Sets:
     left_out: Mapping[str, int]
 
 
-def context_of(room: Row, openings: Iterable[Row]) -> RoomContext:
-    """Build the context of a rooms row and the openings of its scene."""
+def read_sets(root: Path, slots: int) -> Sets:
+    """Read the rooms of data/tables that have at most `slots` objects. Raises ContentError where none is of split train."""
+    words = taxonomy.load()
+    read = {table.name: tables.read(root / path, table) for path, table in TABLES.items()}
+    latents = {r["asset_id"]: np.array(r["latent"], np.float32) for r in tables.read(root / SHAPES, LATENTS)}
+    sets = sets_of(read, latents, sweeps_by_asset(read[ASSET_JOINTS.name]), words.names, words.layout_types, slots)
+    if not sets.train:
+        raise ContentError(
+            "data/tables has no furnished room of split train", "raise corpus.houses in params.yaml, or check the rejects table"
+        )
+    return sets
+
+
+def context_of(room: Row, openings: Iterable[Row], elevation: float = 0.0) -> RoomContext:
+    """Build the context of a rooms row and the openings of its scene; `elevation` [m] of its floor."""
     room_openings = tuple(
         RoomOpening(
             o["kind"],
@@ -56,43 +79,36 @@ def context_of(room: Row, openings: Iterable[Row]) -> RoomContext:
         for o in openings
         if room["room_id"] in o["rooms"]
     )
-    return RoomContext(str(room["layout_type"]), np.array(room["polygon"], float), room_openings, height=float(room["height"]))
+    polygon = np.array(room["polygon"], float)
+    return RoomContext(str(room["layout_type"]), polygon, room_openings, elevation=elevation, height=float(room["height"]))
 
 
 def example_of(
-    room: Row,
-    objects: Sequence[Row],
-    context: RoomContext,
+    key: str,
     split: str,
     layout: int,
+    context: RoomContext,
+    objects: Sequence[Row],
     classes: tuple[str, ...],
     latents: Mapping[str, NDArray[np.float32]],
     sweeps: Mapping[str, NDArray[np.float32]],
-    floor_z: float,
 ) -> Example:
-    """Build one example from the rows of a room."""
-    position = np.array([o["position"] for o in objects], float).reshape(-1, 3) - [*context.centre, floor_z]
-    size, yaw = np.array([o["size"] for o in objects], float).reshape(-1, 3), np.array([o["yaw"] for o in objects], float)
+    """Build one example of a room and the rows of its objects."""
+    position = np.array([o["position"] for o in objects], float).reshape(-1, 3) - [*context.centre, context.elevation]
+    size, yaw = np.array([o["size"] for o in objects], float).reshape(-1, 3), np.array([o["yaw"] for o in objects], float)[:, None]
     latent = np.array([latents.get(o["asset_id"], np.zeros(LATENT)) for o in objects], np.float32).reshape(-1, LATENT)
     swept = np.full((len(objects), SWEEPS, 2, 3), np.nan, np.float32)
     for i, row in enumerate(objects):
         boxes = sweeps.get(row["asset_id"])
         if boxes is not None and row["openable"]:
             swept[i, : len(boxes)] = boxes[:SWEEPS] * np.array(row["scale"], np.float32)
-    return Example(
-        f"{room['scene_id']}/{room['room_id']}",
-        split,
-        layout,
-        class_indices([o["category"] for o in objects], classes),
-        continuous_rows(position, size, yaw, latent),
-        swept,
-        floor_tokens(context),
-        float(room["height"]),
-    )
+    labels = np.array([classes.index(o["category"]) for o in objects], np.int64)
+    continuous = np.concatenate([position, size, np.cos(yaw), np.sin(yaw), latent], 1)
+    return Example(key, split, layout, context, floor_tokens(context), labels, continuous, swept)
 
 
 def sets_of(
-    tables: Mapping[str, Sequence[Row]],
+    rows: Mapping[str, Sequence[Row]],
     latents: Mapping[str, NDArray[np.float32]],
     sweeps: Mapping[str, NDArray[np.float32]],
     classes: tuple[str, ...],
@@ -103,21 +119,19 @@ def sets_of(
 
     Left out, with a count per reason: rooms without a layout type, without objects, with more objects than slots.
     """
-    split = {s["scene_id"]: s["split"] for s in tables["scenes"]}
-    storey = {s["scene_id"]: float(s["storey_height"]) for s in tables["scenes"]}
-    openings, objects = _group_rows(tables["openings"], "scene_id"), _group_rows(tables["objects"], "scene_id", "room_id")
+    scenes = {s["scene_id"]: s for s in rows["scenes"]}
+    openings, objects = _group_rows(rows["openings"], "scene_id"), _group_rows(rows["objects"], "scene_id", "room_id")
     known, by_split, left = set(classes), {"train": [], "val": [], "test": []}, Counter()  # type: ignore[var-annotated]
-    for room in tables["rooms"]:
-        rows = [o for o in objects.get((room["scene_id"], room["room_id"]), []) if o["category"] in known]
-        reason = _reason(room, rows, layouts, slots)
+    for room in rows["rooms"]:
+        scene, name = scenes[room["scene_id"]], (room["scene_id"], room["room_id"])
+        own = [o for o in objects.get(name, []) if o["category"] in known]
+        reason = _reason(room, own, layouts, slots)
         if reason:
             left[reason] += 1
             continue
-        scene = room["scene_id"]
-        context = context_of(room, openings.get((scene,), []))
-        floor_z = room["level"] * storey[scene]
-        example = example_of(room, rows, context, split[scene], layouts.index(room["layout_type"]), classes, latents, sweeps, floor_z)
-        by_split[example.split].append(example)
+        context = context_of(room, openings.get((room["scene_id"],), []), room["level"] * float(scene["storey_height"]))
+        layout = layouts.index(room["layout_type"])
+        by_split[scene["split"]].append(example_of("/".join(name), scene["split"], layout, context, own, classes, latents, sweeps))
     return Sets(tuple(by_split["train"]), tuple(by_split["val"]), tuple(by_split["test"]), dict(sorted(left.items())))
 
 
@@ -138,13 +152,10 @@ def _group_rows(rows: Iterable[Row], *keys: str) -> dict[tuple[Any, ...], list[R
 
 def sweeps_by_asset(joints: Iterable[Row]) -> dict[str, NDArray[np.float32]]:
     """Return, per asset, the boxes (k <= K, 2, 3) [m] that its joints sweep: the K largest, in the object frame."""
-    boxes: dict[str, list[NDArray[np.float64]]] = {}
-    for joint in joints:
-        boxes.setdefault(joint["asset_id"], []).append(np.array([joint["sweep_min"], joint["sweep_max"]], float))
     by_asset = {}
-    for asset, listed in boxes.items():
-        volume = [-float(np.prod(box[1] - box[0])) for box in listed]
-        by_asset[asset] = np.array([listed[i] for i in np.argsort(volume, kind="stable")[:SWEEPS]], np.float32)
+    for (asset,), own in _group_rows(joints, "asset_id").items():
+        boxes = np.array([[joint["sweep_min"], joint["sweep_max"]] for joint in own], float)
+        by_asset[asset] = boxes[np.argsort(-np.prod(boxes[:, 1] - boxes[:, 0], axis=1), kind="stable")[:SWEEPS]].astype(np.float32)
     return by_asset
 
 
@@ -159,11 +170,7 @@ def layout_weights(examples: Sequence[Example], power: float = 0.5) -> NDArray[n
     return np.asarray(weight / weight.sum())
 
 
-def stacked_rows(examples: Sequence[Example]) -> NDArray[np.float64]:
-    """Return all objects' continuous rows (n, 40)."""
-    return np.concatenate([e.continuous for e in examples] or [np.zeros((0, CHANNELS))])
-
-
-def stacked_classes(examples: Sequence[Example]) -> NDArray[np.int64]:
-    """Return all objects' class indices (n,)."""
-    return np.concatenate([e.classes for e in examples] or [np.zeros(0, np.int64)])
+def stacked(examples: Sequence[Example]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return all objects' continuous rows (n, 40) and class indices (n,)."""
+    rows, classes = [np.zeros((0, CHANNELS))], [np.zeros(0, np.int64)]
+    return np.concatenate(rows + [e.continuous for e in examples]), np.concatenate(classes + [e.classes for e in examples])

@@ -17,14 +17,12 @@ from pipeline.diffusion.batch import RoomBatch, room_batch
 from pipeline.diffusion.checkpoint import Header, load_weights
 from pipeline.diffusion.codec import CHANNELS
 from pipeline.diffusion.context import Library, Proposal, RoomContext
-from pipeline.diffusion.denoiser import Denoiser
 from pipeline.diffusion.floor import Floor, floor_tokens
 from pipeline.diffusion.guidance import Guide
 from pipeline.diffusion.inventory import DRAWS, Ask, Inventory, draw_inventories, room_features
-from pipeline.diffusion.schedule import levels, paper_levels
-from pipeline.diffusion.set_transformer import FEW
+from pipeline.diffusion.schedule import denoise, levels, paper_levels
+from pipeline.diffusion.set_transformer import FEW, SetTransformer
 from pipeline.diffusion.settings import SampleSettings
-from pipeline.diffusion.solver import denoise
 from pipeline.errors import ContentError
 
 Key = tuple[int, int, int]  # home index, room number, attempt
@@ -40,7 +38,7 @@ class Sampler:
     keyed, a batch holds rooms of one shape, and matrix products give a row the same bits whatever the other rows, from FEW rows on.
     """
 
-    net: Denoiser
+    net: SetTransformer
     inventory: Inventory
     header: Header
     settings: SampleSettings

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor
+from torch import Tensor, nn
 
 from pipeline import seeds
 from pipeline.diffusion.batch import BUCKETS, Objects, RoomBatch, bucket_of, moved_objects, moved_rooms, reflections
@@ -113,7 +113,7 @@ class Trainer:
         terms = self.group.average(list(self.net.parameters()), torch.stack([total, geometry, shape]).detach())
         torch.nn.utils.clip_grad_norm_(self.net.parameters(), s.clip)
         self.optimiser.step(rate)
-        self._follow()
+        follow(self.average, self.net, s.ema, self.done)
         self.done += 1
         loss, mean_geometry, mean_shape = terms.tolist()
         return Step(self.done, loss, mean_geometry, mean_shape, rate)
@@ -129,11 +129,12 @@ class Trainer:
         self.optimiser.restore(groups.get("optimiser", {}))
         self.done = done
 
-    @torch.no_grad()
-    def _follow(self) -> None:
-        """Move the average towards the weights; faster at first, so that it is not a memory of the random start."""
-        decay = min(self.settings.ema, (1 + self.done) / (10 + self.done))
-        torch._foreach_lerp_(list(self.average.parameters()), list(self.net.parameters()), 1 - decay)
+
+@torch.no_grad()
+def follow(average: nn.Module, net: nn.Module, ema: float, done: int) -> None:
+    """Move the average towards the weights after `done` steps; faster at first, so that it is not a memory of the random start."""
+    decay = min(ema, (1 + done) / (10 + done))
+    torch._foreach_lerp_(list(average.parameters()), list(net.parameters()), 1 - decay)
 
 
 def train(trainer: Trainer, data: Rooms, save: Callable[[Trainer], None] | None = None) -> Iterator[Step]:

@@ -13,8 +13,9 @@ import numpy as np
 
 from pipeline import seeds
 from pipeline.baselines.settings import BaselineSettings
+from pipeline.diffusion.codec import proposals_of
 from pipeline.diffusion.context import Proposal, RoomContext
-from pipeline.diffusion.rooms import context_of
+from pipeline.diffusion.rooms import Example
 from pipeline.experiments.rooms import spread
 from pipeline.metrics import articulation, category, collision, relations
 from pipeline.metrics.intervals import bootstrap, rate
@@ -30,13 +31,6 @@ COUNTING = ("scenefoundry", "ours")  # the models that a number can be asked of
 FLOOR = 1.2  # [m2] that a thing takes: rooms below this times N are not asked for N things
 
 
-class Drafts(NamedTuple):
-    """What a model made of a list of rooms, and the CPU seconds that it took."""
-
-    rooms: list[list[Proposal]]
-    seconds: float
-
-
 class Case(NamedTuple):
     """A room of the split: its context, what stands there in truth, its name."""
 
@@ -45,39 +39,15 @@ class Case(NamedTuple):
     name: str
 
 
-def cases_of(tables: Mapping[str, Sequence[Row]], split: str, layouts: Sequence[str], classes: Sequence[str], slots: int) -> list[Case]:
-    """Return the furnished rooms of a split, in the order of the tables, as the layout models are trained on them."""
-    scenes = {s["scene_id"]: s for s in tables["scenes"] if s["split"] == split}
-    known = set(classes)
-    openings: dict[str, list[Row]] = {}
-    objects: dict[tuple[str, str], list[Row]] = {}
-    for row in tables["openings"]:
-        openings.setdefault(row["scene_id"], []).append(row)
-    for row in tables["objects"]:
-        if row["scene_id"] in scenes and row["category"] in known:
-            objects.setdefault((row["scene_id"], row["room_id"]), []).append(row)
-    cases = []
-    for room in tables["rooms"]:
-        own = objects.get((room["scene_id"], room["room_id"]), [])
-        if room["scene_id"] not in scenes or room["layout_type"] not in layouts or not 0 < len(own) <= slots:
-            continue
-        context = replace(
-            context_of(room, openings.get(room["scene_id"], [])), elevation=room["level"] * float(scenes[room["scene_id"]]["storey_height"])
-        )
-        cases.append(Case(context, [_proposal(o) for o in own], f"{room['scene_id']}/{room['room_id']}"))
-    return cases
+def cases_of(examples: Sequence[Example], classes: Sequence[str]) -> list[Case]:
+    """Return the furnished rooms of a split as the layout models are trained on them."""
+    return [Case(e.context, proposals_of(e.continuous, [classes[k] for k in e.classes], e.context), e.key) for e in examples]
 
 
 def holds(case: Case, count: int) -> bool:
     """Tell whether a room is large enough to be asked for so many things."""
     x, y = case.context.polygon.T
     return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2 >= FLOOR * count
-
-
-def timed_drafts(furnish: Furnish, rooms: Sequence[RoomContext]) -> Drafts:
-    """Furnish rooms."""
-    start = time.process_time()
-    return Drafts(furnish(rooms), time.process_time() - start)
 
 
 def compare_models(
@@ -90,23 +60,22 @@ def compare_models(
 ) -> Json:
     """Furnish rooms with every model, and return their figures beside those of the real rooms; `opens` says which classes count as articulated."""
     shown = spread(cases, settings.rooms)
-
-    by_model = {name: timed_drafts(furnish, [case.context for case in shown]) for name, furnish in makers.items()}
-    counted = {
-        name: {n: timed_drafts(makers[name], rooms_with_target(cases, n, settings.count_rooms)) for n in settings.counts}
+    made, seconds = {"real": [case.real for case in shown]}, {}
+    for name, furnish in makers.items():
+        start = time.process_time()
+        made[name] = furnish([case.context for case in shown])
+        seconds[name] = {"cpu_seconds_per_room": round((time.process_time() - start) / len(shown), 4)}
+    quantity = {
+        name: {str(n): success(makers[name](rooms_with_target(cases, n, settings.count_rooms)), n) for n in settings.counts}
         for name in COUNTING
     }
-    real = [case.real for case in shown]
     rng = seeds.generator(seed, "baselines-bootstrap")
-    made_by = {"real": real} | {name: each.rooms for name, each in by_model.items()}
-    lived = liveable(rng, seed, shown, made_by, known)
-    models = {name: figures(rng, shown, rooms, real, opens, settings.counts) | lived[name] for name, rooms in made_by.items()}
-    for name, each in by_model.items():
-        models[name]["cpu_seconds_per_room"] = round(each.seconds / len(shown), 4)
-    return {
-        "models": models,
-        "quantity": {name: {str(n): success(each.rooms, n) for n, each in by_count.items()} for name, by_count in counted.items()},
+    lived = liveable(rng, seed, shown, made, known)
+    models = {
+        name: figures(rng, shown, rooms, made["real"], opens, settings.counts) | lived[name] | seconds.get(name, {})
+        for name, rooms in made.items()
     }
+    return {"models": models, "quantity": quantity}
 
 
 def figures(
@@ -176,9 +145,3 @@ def object_rows(drafts: Sequence[Sequence[Proposal]], opens: Mapping[str, bool])
         for number, draft in enumerate(drafts)
         for p in draft
     ]  # fmt: skip
-
-
-def _proposal(row: Row) -> Proposal:
-    return Proposal(
-        row["category"], np.array(row["position"], float), float(row["yaw"]), np.array(row["size"], float), np.zeros(0, np.float32)
-    )

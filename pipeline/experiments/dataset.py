@@ -1,13 +1,11 @@
 """Figures of the dataset that ships, and counts of what was left out on the way."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pipeline import tables
-from pipeline.entities.reason import Reason
 from pipeline.homes import reasons as homes
 from pipeline.homes.rows import Row
 from pipeline.sources import reasons as sources
@@ -41,20 +39,8 @@ def dataset_figures(folder: Path) -> dict[str, Any]:
     }
 
 
-@dataclass(frozen=True, slots=True)
-class RejectCount:
-    """How often a stage gave a reason to a kind of thing, what that means, and the first case."""
-
-    stage: str
-    what: str
-    code: str
-    reason: Reason
-    count: int
-    example: str
-
-
-def reject_counts(root: Path) -> list[RejectCount]:
-    """Count everything that was left out, repaired or tried again, by stage, kind of thing and reason."""
+def reject_rows(root: Path) -> list[list[str]]:
+    """Count everything that was left out, repaired or tried again: stage, kind of thing, reason, its effect, count, what it means, first case."""
     places = [("preprocess", sources.REASONS, [root / "data" / "tables" / "rejects.parquet"])]
     places += [("postopt", homes.REASONS, sorted((root / "data" / "shards" / "rejects").glob("*.parquet")))]
     counts = []
@@ -64,7 +50,7 @@ def reject_counts(root: Path) -> list[RejectCount]:
             cases.setdefault((row["what"], row["reason"]), []).append(row)
         for (what, code), rows in sorted(cases.items()):
             example = ": ".join(filter(None, (rows[0]["where"], rows[0]["detail"])))
-            counts.append(RejectCount(stage, what, code, known[code], len(rows), example))
+            counts.append([stage, what, code, known[code].effect, str(len(rows)), known[code].doc, example[:90]])
     return counts
 
 

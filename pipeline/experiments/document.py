@@ -12,13 +12,12 @@ from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
 from pipeline.execution import cores, map_jobs
 from pipeline.experiments import lineup
-from pipeline.experiments.dataset import RejectCount, shipped_rows
-from pipeline.experiments.knobs import knob_picture, monotone
+from pipeline.experiments.dataset import reject_rows, shipped_rows
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
 from pipeline.manifest import write_bytes, write_with
-from pipeline.report import baselines, calibration, planning, sections
+from pipeline.report import baselines, calibration, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
 from pipeline.report.realism import realism_section
@@ -29,12 +28,8 @@ from schemas.scenes import SCENES
 
 SHOWN = 24  # top views on the page
 
-RECORDS = "benchmarks/records"  # figures that are too dear for `make run`, each with its commit and command
 
-
-def write_report(
-    root: Path, figures: Mapping[str, Any], rejects: Sequence[RejectCount], factory: Factory, settings: MetricsSettings
-) -> None:
+def write_report(root: Path, figures: Mapping[str, Any], factory: Factory, settings: MetricsSettings) -> None:
     """Write report/index.html with its pictures, from the figures and the dataset of this checkout."""
     folder = root / "report"
     shutil.rmtree(folder, ignore_errors=True)
@@ -47,15 +42,12 @@ def write_report(
         if (root / "plots" / "loss.csv").is_file()
         else []
     )
-    bars, failures, knobs = (_json(root / RECORDS / name) for name in ("planning.json", "failures.json", "knobs.json"))
     chapters = [
         Section("Views", [missing] if missing else [], pictures=gallery, wide=True),
         sections.dataset_section(
             figures["dataset"], _json(root / "metrics" / "sampling.json") | _json(root / "metrics" / "timing.json"), views
         ),
         sections.plan_section(figures["plan"]),
-        planning.planning_section(bars, failures, knobs, monotone),
-        _knobs(folder, knobs),
         sections.quantity_section(figures["quantity"], rates["quantity"]),
         sections.articulation_section(figures["articulation"], figures["ablation"]),
         sections.walkable_section(figures["walkable"], rates["walkable"]),
@@ -64,7 +56,7 @@ def write_report(
         realism_section(figures["realism"], lineups(root, folder, homes, factory, settings)),
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
         _calibration(folder, _json(root / "metrics" / "calibration.json")),
-        sections.reject_section([_reject_row(r) for r in rejects]),
+        sections.reject_section(reject_rows(root)),
     ]
     write_bytes(folder / "index.html", render("Homes for robots", _lead(root), [c for c in chapters if c]).encode())
 
@@ -101,19 +93,6 @@ def _calibration(folder: Path, comparison: Mapping[str, Any]) -> Section | None:
         write_bytes(folder / "plots" / f"{name}.png", png)
         pictures.append(Picture(f"plots/{name}.png", name.replace("_", ", ")))
     return calibration.calibration_section(comparison, pictures)
-
-
-def _knobs(folder: Path, table: Mapping[str, Any]) -> Section | None:
-    """Return the chapter of the knobs, from the table that the checkout carries; a checkout without benchmarks has none."""
-    if not table:
-        return None
-    write_bytes(folder / "plots" / "knobs.png", knob_picture(table))
-    return sections.knob_section(table, Picture("plots/knobs.png", "each knob against its own term"))
-
-
-def _reject_row(reject: RejectCount) -> list[str]:
-    reason = reject.reason
-    return [reject.stage, reject.what, reject.code, reason.effect, str(reject.count), reason.doc, reject.example[:90]]
 
 
 def dataset_homes(root: Path) -> list[Home]:

@@ -10,7 +10,7 @@ from pipeline.entities.asset import Asset
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.experiments.trials import Condition, Trial
 from pipeline.homes.rows import Row
-from pipeline.metrics import articulation, category, collision, openable, quantity, reach, walkable
+from pipeline.metrics import articulation, category, collision, control, reach
 
 ALL_PLAIN, ALL_GUIDED = "all_plain", "all_guided"  # the conditions that furnish every room of the split
 Trials = Mapping[str, Trial]
@@ -40,10 +40,10 @@ def quantity_table(trials: Trials, counts: Sequence[int], rooms: int) -> Json:
     for n in counts:
         guided, plain = trials[f"count_{n}"], trials[f"count_{n}_plain"]
         table[str(n)] = {
-            "plain": quantity.from_rooms(plain.drafted["rooms"])[str(n)],
-            "drafted": quantity.from_rooms(guided.drafted["rooms"])[str(n)],
-            "first": quantity.from_rooms(guided.first["rooms"])[str(n)],
-            "shipped": quantity.from_rooms(guided.shipped["rooms"]).get(str(n), {}),
+            "plain": control.quantity(plain.drafted["rooms"])[str(n)],
+            "drafted": control.quantity(guided.drafted["rooms"])[str(n)],
+            "first": control.quantity(guided.first["rooms"])[str(n)],
+            "shipped": control.quantity(guided.shipped["rooms"]).get(str(n), {}),
             "ships": len(guided.shipped["rooms"]) / rooms,
         }
     return table
@@ -54,15 +54,11 @@ def walkable_table(trials: Trials, taus: Sequence[float], rooms: int) -> Json:
     table: Json = {}
     plain = trials["guided"].shipped["rooms"]
     for tau in taus:
-        ours, first = (rows["rooms"] for rows in (trials[f"walkable_{tau:.2f}"].shipped, trials[f"walkable_{tau:.2f}"].first))
+        asked = trials[f"walkable_{tau:.2f}"]
+        sets = {"without": plain, "first": asked.first["rooms"], "with": asked.shipped["rooms"]}
         table[f"{tau:.2f}"] = {
-            meaning: {
-                "without": walkable.success_rate([float(r[f"walkable_{meaning}"]) for r in plain], tau),
-                "first": walkable.success_rate([float(r[f"walkable_{meaning}"]) for r in first], tau),
-                "with": walkable.success_rate([float(r[f"walkable_{meaning}"]) for r in ours], tau),
-            }
-            for meaning in walkable.MEANINGS
-        } | {"ships": len(ours) / rooms}
+            meaning: {name: control.walkable(rows, meaning, tau) for name, rows in sets.items()} for meaning in control.MEANINGS
+        } | {"ships": len(sets["with"]) / rooms}
     return table
 
 
@@ -85,8 +81,8 @@ def figures(rng: np.random.Generator, rows: Mapping[str, list[Row]], sweeps: art
         "r_reach": reach.reach(rng, rows["rooms"], rows["objects"]),
         "reach": reach.openable_reach(rows["joints"]),
         "collision": collision.rates(rows["objects"], assets),
-        "openable": openable.per_room(rng, rows["rooms"]),
-        "walkable": walkable.means(rng, rows["rooms"]),
+        "openable": control.openable(rng, rows["rooms"]),
+        "walkable": control.walkable_means(rng, rows["rooms"]),
     }
 
 
@@ -102,7 +98,7 @@ def ablation_table(rng: np.random.Generator, trials: Trials, taus: Sequence[floa
     return {
         name: {
             "col_obj": collision.rates(rows["objects"])["bbox"]["col_obj"],
-            "r_walkable": walkable.means(rng, rows["rooms"]),
+            "r_walkable": control.walkable_means(rng, rows["rooms"]),
             "r_reach": reach.reach(rng, rows["rooms"], rows["objects"]),
         }
         for name, rows in named.items()

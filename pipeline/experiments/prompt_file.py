@@ -97,7 +97,7 @@ def _constraint(check: Mapping[str, Any], where: str) -> None:
     for name in NEEDS.get(kind, ()):
         if check.get(name) is None:
             raise ContentError(f"{where}: the constraint {kind!r} lacks {name!r}", REMEDY)
-    for name in MEASURES & check.keys():
+    for name in check.keys() & MEASURES:
         if isinstance(check[name], bool) or not isinstance(check[name], int | float):
             raise ContentError(f"{where}: {name!r} of the constraint {kind!r} is no number", REMEDY)
     for name, wanted in (("rooms", list), ("avoid", list), ("any_room", list), ("exclude", list), ("zones", dict)):

@@ -13,15 +13,7 @@ from pipeline.metrics.plan_scores import score, score_checks
 Json = dict[str, Any]
 CHECKED = ("presence", "adjacency", "constraints", "strict")  # what a case without a graph is scored on
 SCORES = ("node", "constraint", "edge", "presence", "adjacency", "constraints", "strict")
-NAMES = {
-    "node": "S_node",
-    "constraint": "S_constraint",
-    "edge": "S_edge",
-    "presence": "presence",
-    "adjacency": "adjacency",
-    "constraints": "constraints",
-    "strict": "strict success",
-}
+NAMES = {"node": "S_node", "constraint": "S_constraint", "edge": "S_edge", "strict": "strict success"}  # in print, of those that differ
 
 
 def case_program(case: Mapping[str, Any]) -> FloorProgram:
@@ -41,20 +33,9 @@ def evaluate_prompts(
     for case in cases:
         runs = [_run(case, seed, program) for seed in range(seeds)]
         rows.append({"id": case["id"], "prompt": case["prompt"], "scored": bool(score_names(case)), "runs": runs, **_summary(runs)})
-    by_seed = [
-        {
-            k: float(np.mean([row["runs"][s][k] for row in rows if k in row["runs"][s]]))
-            for k in (*SCORES, "seconds", "cpu_seconds")
-            if _any(rows, s, k)
-        }
-        for s in range(seeds)
-    ]
+    by_seed = [_means([row["runs"][s] for row in rows]) for s in range(seeds)]
     failed = sum(run["refused"] is not None for row in rows for run in row["runs"])
     return {"seeds": seeds, "prompts": rows, "failures": failed, "plans": seeds * len(rows), **_summary(by_seed)}
-
-
-def _any(rows: Sequence[Json], seed: int, key: str) -> bool:
-    return any(key in row["runs"][seed] for row in rows)
 
 
 def _run(case: Mapping[str, Any], seed: int, program: Callable[[Mapping[str, Any]], FloorProgram]) -> Json:
@@ -86,11 +67,15 @@ def score_names(case: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _summary(runs: Sequence[Mapping[str, Any]]) -> Json:
-    keys = [k for k in (*SCORES, "seconds", "cpu_seconds") if runs and k in runs[0]]
-    return {
-        "mean": {k: round(float(np.mean([r[k] for r in runs])), 4) for k in keys},
-        "spread": {k: round(float(np.std([r[k] for r in runs])), 4) for k in keys},
-    }
+    mean = _means(runs)
+    spread = {k: round(float(np.std([r[k] for r in runs])), 4) for k in mean}
+    return {"mean": {k: round(v, 4) for k, v in mean.items()}, "spread": spread}
+
+
+def _means(runs: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+    """Return the mean of each figure over the runs that have it."""
+    listed = {k: [r[k] for r in runs if k in r] for k in (*SCORES, "seconds", "cpu_seconds")}
+    return {k: float(np.mean(values)) for k, values in listed.items() if values}
 
 
 def report(figures: Mapping[str, Any]) -> str:

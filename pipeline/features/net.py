@@ -12,16 +12,16 @@ from pathlib import Path
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import save
 from torch import Tensor, nn
 
 from pipeline.errors import ContentError
-from pipeline.manifest import digest, write_bytes
+from pipeline.manifest import digest
+from pipeline.tensors import load_state, load_tensors, save_tensors
 
 FEATURES = 32
 CHANNELS = (16, 32, 64, 96)
 BATCH = 256
+REMEDY = "make them with `python -m stages.features`"
 
 
 class ViewNet(nn.Module):
@@ -81,29 +81,16 @@ def header(rooms: Sequence[str], states: Sequence[str], categories: Sequence[str
 
 
 def store(path: Path, net: ViewNet, said: dict[str, str]) -> None:
-    """Write weights as safetensors."""
-    write_bytes(path, save({name: value.contiguous() for name, value in net.state_dict().items()}, said))
+    """Write weights."""
+    save_tensors(path, net.state_dict(), said)
 
 
 def load(path: Path, said: dict[str, str]) -> ViewNet:
     """Read weights. Raises ContentError where they are missing, broken, or made for another vocabulary or architecture."""
-    remedy = "make them with `python -m stages.features`"
-    if not path.is_file():
-        raise ContentError(f"{path} is missing", remedy)
-    try:
-        with safe_open(path, framework="pt") as handle:
-            metadata = handle.metadata() or {}
-            tensors = {name: handle.get_tensor(name) for name in handle.keys()}  # noqa: SIM118 - no mapping
-    except (OSError, SafetensorError) as error:
-        raise ContentError(f"{path} is no safetensors file ({error})", remedy) from error
+    tensors, metadata = load_tensors(path, REMEDY)
     odd = [key for key in said if metadata.get(key) != said[key]]
-    if odd:
-        raise ContentError(f"{path} was made for other {', '.join(odd)}", remedy)
-    try:
-        net = ViewNet(len(json.loads(said["rooms"])), len(json.loads(said["states"])), len(tensors["layout.bias"]))
-        net.load_state_dict(tensors)
-    except (RuntimeError, KeyError) as error:
-        raise ContentError(f"{path} does not fit the net ({str(error).splitlines()[0]})", remedy) from error
-    if not all(bool(torch.isfinite(value).all()) for value in tensors.values()):
-        raise ContentError(f"{path} holds numbers that are not finite", remedy)
+    if odd or "layout.bias" not in tensors:
+        raise ContentError(f"{path} was made for other {', '.join(odd or ['nets'])}", REMEDY)
+    net = ViewNet(len(json.loads(said["rooms"])), len(json.loads(said["states"])), len(tensors["layout.bias"]))
+    load_state(net, tensors, path, REMEDY)
     return net

@@ -8,8 +8,7 @@ import torch
 from torch import Tensor
 
 from pipeline import seeds
-from pipeline.latents.settings import EncodeSettings
-from pipeline.latents.vae import PointVae, chamfer, kl_to_standard_normal
+from pipeline.latents.vae import EncodeSettings, PointVae, chamfer, kl_to_standard_normal
 
 
 class Step(NamedTuple):

@@ -1,14 +1,42 @@
-"""The point-cloud VAE: PointNet encoder, MLP decoder, Chamfer distance and KL.
+"""The point-cloud VAE: PointNet encoder, MLP decoder, Chamfer distance and KL; on disk with its settings in the header.
 
 Shapes: clouds (B, P, 3) in the cube [-0.5, 0.5]^3; mean and log-variance (B, 32).
 """
 
 from __future__ import annotations
 
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Literal
+
 import torch
 from torch import Tensor, nn
 
-from pipeline.latents.settings import EncodeSettings
+from pipeline.errors import ContentError
+from pipeline.manifest import canonical
+from pipeline.params import build
+from pipeline.tensors import load_state, load_tensors, save_tensors
+
+FORMAT = "sfgen-vae-1"
+REMEDY = "run `dvc repro encode`"
+
+
+@dataclass(frozen=True, slots=True)
+class EncodeSettings:
+    """How the point-cloud VAE is trained and used (section `encode` of params.yaml)."""
+
+    start: Literal["released", "scratch"] = "scratch"  # released: the encoder in weights/ as it is
+    points: int = 2048  # points of a surface sample
+    train_points: int = 512  # random subset of it that one training step sees
+    decoded_points: int = 384  # points that the decoder makes
+    width: int = 64
+    latent: int = 32  # dimensions of the latent
+    steps: int = 300
+    batch: int = 32
+    learning_rate: float = 3e-3
+    kl_weight: float = 0.001
+    threads: int = 0  # torch threads, part of the digest; 0: all cores
 
 
 class Encoder(nn.Module):
@@ -80,3 +108,20 @@ def _mean_distance(a: Tensor, b: Tensor, nearest: Tensor) -> Tensor:
 def kl_to_standard_normal(mean: Tensor, logvar: Tensor) -> Tensor:
     """Return KL(N(mean, exp(logvar)) || N(0, I)) per cloud (B,) [nats]."""
     return 0.5 * (mean**2 + logvar.exp() - 1 - logvar).sum(-1)
+
+
+def save_vae(path: Path, net: PointVae, settings: EncodeSettings) -> None:
+    """Write the weights (atomically)."""
+    save_tensors(path, net.state_dict(), {"vae": canonical({"format": FORMAT, "settings": asdict(settings)}).decode()})
+
+
+def load_vae(path: Path) -> tuple[PointVae, EncodeSettings]:
+    """Read the weights. Raises ContentError when the file is missing, truncated or of another format."""
+    tensors, headers = load_tensors(path, REMEDY)
+    header = json.loads(headers.get("vae", "{}"))
+    if header.get("format") != FORMAT:
+        raise ContentError(f"{path} does not hold the shape encoder ({FORMAT})", REMEDY)
+    settings = build(EncodeSettings, header["settings"], "encode")
+    net = PointVae.of(settings)
+    load_state(net, tensors, path, REMEDY)
+    return net.eval(), settings

@@ -50,21 +50,18 @@ def extended_boxes(objects: Sequence[Row], extension: Extension, sweeps: Sweeps 
     return position, yaw, size
 
 
-def are_obstructed(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None = None, *, both: bool = True) -> list[bool]:
-    """Tell of each openable object of a room whether its b' meets any other's b' (or b at rest, with `both` false)."""
+def are_obstructed(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None = None) -> list[bool]:
+    """Tell of each openable object of a room whether its b' meets any other's b'."""
     if not objects:
         return []
-    mine = extended_boxes(objects, extension, sweeps)
-    iou = iou_matrix(*mine, None if both else boxes(objects))
+    iou = iou_matrix(*extended_boxes(objects, extension, sweeps))
     np.fill_diagonal(iou, 0.0)
     return [bool(iou[i].max() > EPSILON) for i, row in enumerate(objects) if row["openable"]]
 
 
-def acoll(
-    rng: np.random.Generator, objects: Iterable[Row], extension: Extension, sweeps: Sweeps | None = None, *, both: bool = True
-) -> dict[str, Mean | Rate]:
+def acoll(rng: np.random.Generator, objects: Iterable[Row], extension: Extension, sweeps: Sweeps | None = None) -> dict[str, Mean | Rate]:
     """Return R_acoll: the mean over rooms with openable objects, as printed, and the rate over all such objects."""
-    rooms = [flags for own in by_room(objects).values() if (flags := are_obstructed(own, extension, sweeps, both=both))]
+    rooms = [flags for own in by_room(objects).values() if (flags := are_obstructed(own, extension, sweeps))]
     hits = [hit for flags in rooms for hit in flags]
     return {"rooms": bootstrap(rng, [float(np.mean(flags)) for flags in rooms]), "objects": rate(sum(hits), len(hits))}
 

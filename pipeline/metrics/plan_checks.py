@@ -173,38 +173,30 @@ def _hallway_share(s: Scene, c: Mapping[str, Any]) -> float:
     return float(halls / sum(r.area for r in s.plan.rooms) <= c["max"] + 1e-9)
 
 
+def _storeys(s: Scene, c: Mapping[str, Any]) -> float:
+    return float(max(r.level for r in s.plan.rooms) + 1 == c["equals"])
+
+
+def _room_count(s: Scene, c: Mapping[str, Any]) -> float:
+    return float(len(s.plan.rooms) == c["equals"])
+
+
+def _entrance_room(s: Scene, c: Mapping[str, Any]) -> float:
+    return float(s.plan.entrance in {r.room_id for r in s.select(c["room"])})
+
+
+def _min_hops(s: Scene, c: Mapping[str, Any]) -> float:
+    return float(all(s.hops(a, b) >= c["min"] for a in s.select(c["a"]) for b in s.select(c["b"])))
+
+
 CHECKS = {
-    "total_area": _total_area,
-    "room_area": _room_area,
-    "area_share": _area_share,
-    "area_order": _area_order,
-    "area_equal": _area_equal,
-    "area_max_of": _area_max_of,
-    "not_adjacent": _not_adjacent,
-    "not_open": _not_open,
-    "open_plan": _open_plan,
-    "separation": _separation,
-    "zone_split": _zone_split,
-    "ensuite": _ensuite,
-    "degree": _degree,
-    "reachable_without": _reachable_without,
-    "between": _between,
-    "exterior_access": _exterior_access,
-    "exterior_wall": _exterior_wall,
-    "exterior_length": _exterior_length,
-    "min_door_width": _min_door_width,
-    "min_corridor_width": _min_corridor_width,
-    "irregularity": _irregularity,
-    "footprint": _footprint,
-    "level": _level,
-    "hallway_share": _hallway_share,
-    "storeys": lambda s, c: float(max(r.level for r in s.plan.rooms) + 1 == c["equals"]),
-    "room_count": lambda s, c: float(len(s.plan.rooms) == c["equals"]),
-    "entrance_room": lambda s, c: float(s.plan.entrance in {r.room_id for r in s.select(c["room"])}),
-    "min_hops": lambda s, c: float(all(s.hops(a, b) >= c["min"] for a in s.select(c["a"]) for b in s.select(c["b"]))),
-}
-
-
+    check.__name__[1:]: check
+    for check in (
+        _total_area, _room_area, _area_share, _area_order, _area_equal, _area_max_of, _not_adjacent, _not_open, _open_plan, _separation,
+        _zone_split, _ensuite, _degree, _reachable_without, _between, _exterior_access, _exterior_wall, _exterior_length, _min_door_width,
+        _min_corridor_width, _irregularity, _footprint, _level, _hallway_share, _storeys, _room_count, _entrance_room, _min_hops,
+    )
+}  # fmt: skip
 NEEDS = {  # fields without which a check says nothing
     "room_area": ("room",), "area_share": ("room",), "area_order": ("larger", "smaller"), "area_equal": ("rooms", "tol"),
     "area_max_of": ("room", "among"), "not_adjacent": ("a", "b"), "not_open": ("a", "b"), "open_plan": ("rooms",),
@@ -213,22 +205,9 @@ NEEDS = {  # fields without which a check says nothing
     "min_door_width": ("value",), "min_corridor_width": ("value",), "irregularity": ("min_nonrect_rooms",), "level": ("room", "equals"),
     "hallway_share": ("max",), "storeys": ("equals",), "room_count": ("equals",), "entrance_room": ("room",), "min_hops": ("a", "b", "min"),
 }  # fmt: skip
-MEASURES = frozenset(
-    {
-        "min",
-        "max",
-        "tol",
-        "min_ratio",
-        "min_frac_diag",
-        "min_m",
-        "value",
-        "equals",
-        "min_aspect",
-        "max_aspect",
-        "min_nonrect_rooms",
-        "max_crossings",
-    }
-)
+MEASURES = (
+    "min", "max", "tol", "min_ratio", "min_frac_diag", "min_m", "value", "equals", "min_aspect", "max_aspect", "min_nonrect_rooms", "max_crossings",
+)  # fmt: skip
 
 
 def constraint(scene: Scene, check: Mapping[str, Any]) -> float:

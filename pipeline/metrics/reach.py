@@ -1,6 +1,6 @@
 """Reach: R_reach as the peers code it, and the share of openable objects that a robot can really stand at and open."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ LIMIT = 1.5  # objects whose centre is higher are no obstacles [m]
 MARGIN = 0.2  # of the raster around the room [m]
 
 
-def room_reach(polygon: NDArray[np.float64], objects: Sequence[Row], elevation: float = 0.0) -> float:
+def room_reach(polygon: NDArray[np.float64], objects: Sequence[Row]) -> float:
     """Return R_reach of one room as PhyScene codes it; 1 for a room without objects.
 
     The floor is eroded by half the robot's width, boxes are grown by it; what is left falls into 8-connected parts k.
@@ -26,7 +26,7 @@ def room_reach(polygon: NDArray[np.float64], objects: Sequence[Row], elevation: 
     Closed footprints; no test of fronts or handles.
     """
     position, yaw, size = boxes(objects)
-    low = position[:, 2] + size[:, 2] / 2 - elevation < LIMIT
+    low = position[:, 2] + size[:, 2] / 2 < LIMIT
     if not low.any():
         return 1.0
     centre = (polygon.min(0) + polygon.max(0)) / 2
@@ -52,16 +52,10 @@ def room_reach(polygon: NDArray[np.float64], objects: Sequence[Row], elevation: 
     return float((touched.mean(0) * areas).sum() / areas.sum())
 
 
-def reach(rng: np.random.Generator, rooms: Iterable[Row], objects: Iterable[Row], storey_height: Mapping[str, float] | float = 3.0) -> Mean:
-    """Return the mean R_reach over rooms with objects, as the peers code it."""
-    grouped = by_room(objects)
-    values = []
-    for room in rooms:
-        own = grouped.get((room["scene_id"], room["room_id"]), [])
-        if own:
-            height = storey_height if isinstance(storey_height, float) else storey_height[room["scene_id"]]
-            values.append(room_reach(np.array(room["polygon"], float), own, room["level"] * height))
-    return bootstrap(rng, values)
+def reach(rng: np.random.Generator, rooms: Iterable[Row], objects: Iterable[Row]) -> Mean:
+    """Return the mean R_reach over rooms with objects, on the ground, as the peers code it."""
+    polygons = {(room["scene_id"], room["room_id"]): np.array(room["polygon"], float) for room in rooms}
+    return bootstrap(rng, [room_reach(polygons[name], own) for name, own in by_room(objects).items() if name in polygons])
 
 
 def openable_reach(joints: Iterable[Row]) -> dict[str, Rate]:

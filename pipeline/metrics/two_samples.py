@@ -1,6 +1,7 @@
 """Two samples of rooms: whether a classifier tells them apart (SCA, .5 is best), and how far apart they are (FID, KID)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,8 +9,6 @@ from numpy.typing import NDArray
 from pipeline.metrics.intervals import Mean, Rate, rate
 
 Floats = NDArray[np.float64]
-
-Fitted = Callable[[Floats, NDArray[np.intp], Floats], NDArray[np.intp]]  # features, kinds, features asked -> kinds
 
 FOLDS = 5
 TREES = 100
@@ -24,11 +23,8 @@ def forest_accuracy(seed: int, real: Floats, generated: Floats, real_rooms: Sequ
     """
     from sklearn.ensemble import RandomForestClassifier
 
-    def forest(x: Floats, y: NDArray[np.intp], asked: Floats) -> NDArray[np.intp]:
-        model = RandomForestClassifier(TREES, min_samples_leaf=2, class_weight="balanced", random_state=seed, n_jobs=1)
-        return np.asarray(model.fit(x, y).predict(asked))
-
-    return _accuracy(forest, seed, real, generated, real_rooms, generated_rooms)
+    forest = RandomForestClassifier(TREES, min_samples_leaf=2, class_weight="balanced", random_state=seed, n_jobs=1)
+    return _accuracy(forest, seed, real, generated, [*real_rooms, *generated_rooms])
 
 
 def linear_accuracy(seed: int, real: Floats, generated: Floats, real_rooms: Sequence[str], generated_rooms: Sequence[str]) -> Rate:
@@ -37,27 +33,20 @@ def linear_accuracy(seed: int, real: Floats, generated: Floats, real_rooms: Sequ
     from sklearn.pipeline import make_pipeline
     from sklearn.preprocessing import StandardScaler
 
-    def linear(x: Floats, y: NDArray[np.intp], asked: Floats) -> NDArray[np.intp]:
-        model = make_pipeline(StandardScaler(), LogisticRegression(C=0.3, class_weight="balanced", max_iter=300))
-        return np.asarray(model.fit(x, y).predict(asked))
-
-    return _accuracy(linear, seed, real, generated, real_rooms, generated_rooms)
+    linear = make_pipeline(StandardScaler(), LogisticRegression(C=0.3, class_weight="balanced", max_iter=300))
+    return _accuracy(linear, seed, real, generated, [*real_rooms, *generated_rooms])
 
 
-def _accuracy(
-    fitted: Fitted, seed: int, real: Floats, generated: Floats, real_rooms: Sequence[str], generated_rooms: Sequence[str]
-) -> Rate:
+def _accuracy(classifier: Any, seed: int, real: Floats, generated: Floats, rooms: Sequence[str]) -> Rate:
     """Return the balanced share of right answers over folds of whole rooms."""
     x, y = np.concatenate([real, generated]), np.repeat([0, 1], [len(real), len(generated)])
-    rooms = np.array([*real_rooms, *generated_rooms])
-    names = np.unique(rooms)
-    fold_of = dict(zip(names.tolist(), np.random.default_rng(seed).permutation(len(names)) % FOLDS, strict=True))
-    fold = np.array([fold_of[name] for name in rooms.tolist()])
+    names, room = np.unique(np.array(rooms), return_inverse=True)
+    fold = (np.random.default_rng(seed).permutation(len(names)) % FOLDS)[room]
     right = np.zeros(len(y), bool)
     for k in range(FOLDS):
         known, asked = fold != k, fold == k
         if asked.any() and len(np.unique(y[known])) == 2:
-            right[asked] = fitted(x[known], y[known], x[asked]) == y[asked]
+            right[asked] = classifier.fit(x[known], y[known]).predict(x[asked]) == y[asked]
     balanced = (right[y == 0].mean() + right[y == 1].mean()) / 2 if len(real) and len(generated) else 0.0
     return rate(round(float(balanced) * len(y)), len(y))
 

@@ -3,6 +3,9 @@
 import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 COLOURS = ("#8a94a3", "#c8643c", "#2f7f86", "#7a5ea8")
 
@@ -20,12 +23,7 @@ class Curve:
 
 def lines(curves: Sequence[Curve], *, title: str, x: str, y: str, y_range: tuple[float, float] | None = None, log: bool = False) -> bytes:
     """Draw curves with their intervals as error bars and return a PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 3.8), dpi=130, layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.subplots()
+    figure, axes = _axes(6.4)
     for colour, curve in zip(COLOURS, curves, strict=False):
         axes.plot(curve.x, curve.y, "-o" if len(curve.x) < 40 else "-", color=colour, label=curve.label, markersize=4, linewidth=1.6)
         if curve.low is not None and curve.high is not None:
@@ -36,54 +34,32 @@ def lines(curves: Sequence[Curve], *, title: str, x: str, y: str, y_range: tuple
     if log:
         axes.set_yscale("log")
     axes.grid(color="#e6eaef")
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False)
-    return _png(figure)
-
-
-def panels(curves: Sequence[Curve], *, title: str, x: str, columns: int = 4) -> bytes:
-    """Draw each curve in a small panel of its own, from zero, with its interval as a band, and return a PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    rows = -(-len(curves) // columns)
-    figure = Figure(figsize=(2.4 * columns, 1.7 * rows), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
-    figure.suptitle(title, fontsize=10)
-    for axes, curve in zip(figure.subplots(rows, columns).flat, curves, strict=False):
-        axes.plot(curve.x, curve.y, "-o", color=COLOURS[2], markersize=3, linewidth=1.4)
-        if curve.low is not None and curve.high is not None:
-            axes.fill_between(curve.x, curve.low, curve.high, color=COLOURS[2], alpha=0.18, linewidth=0)
-        axes.set_title(curve.label, fontsize=9)
-        axes.set_ylim(0, 1.08 * max(*(curve.high or curve.y), 1e-6))
-        axes.tick_params(labelsize=7)
-        axes.grid(color="#e6eaef")
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.set_xlabel(x, fontsize=7)
-    return _png(figure)
+    return _png(figure, axes)
 
 
 def bars(groups: Mapping[str, Sequence[float]], labels: Sequence[str], *, title: str, y: str) -> bytes:
     """Draw grouped bars, one group of bars per label, and return a PNG."""
-    import numpy as np
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(max(6.4, 0.32 * len(labels)), 3.8), dpi=130, layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.subplots()
+    figure, axes = _axes(max(6.4, 0.32 * len(labels)))
     width = 0.8 / len(groups)
     for i, (name, values) in enumerate(groups.items()):
         axes.bar(np.arange(len(labels)) + (i + 0.5) * width - 0.4, values, width, label=name, color=COLOURS[i])
     axes.set(title=title, ylabel=y)
     axes.set_xticks(range(len(labels)), labels, rotation=90 if len(labels) > 8 else 0, fontsize=8)
+    return _png(figure, axes)
+
+
+def _axes(width: float) -> tuple[Any, Any]:
+    """Return an empty figure so many inches wide, and its axes."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, 3.8), dpi=130, layout="constrained")
+    return figure, figure.subplots()
+
+
+def _png(figure: Any, axes: Any) -> bytes:
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(frameon=False)
-    return _png(figure)
-
-
-def _png(figure: object) -> bytes:
     buffer = io.BytesIO()
     # Without the metadata matplotlib would write its version; the bytes shall depend on the figures only.
-    figure.savefig(buffer, format="png", metadata={"Software": None})  # type: ignore[attr-defined]
+    figure.savefig(buffer, format="png", metadata={"Software": None})
     return buffer.getvalue()

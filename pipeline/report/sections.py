@@ -130,16 +130,6 @@ def _benchmark(mean: Json) -> float:
     return 0.5 * float(mean["presence"]) + 0.3 * float(mean["adjacency"]) + 0.2 * float(mean["constraints"])
 
 
-def knob_section(table: Json, picture: Picture) -> Section:
-    """Return what turning each knob does to its own term; the table is measured apart, for it takes minutes."""
-    header = ("knob", *(f"2^{v}" for v in table["values"]), "ends", "standard error")
-    rows = [
-        [name.replace("_", " "), *(f"{m:.4f}" for m in r["mean"]), *(f"{e:.4f}" for e in r["ends"])] for name, r in table["terms"].items()
-    ]
-    text = [f"Each energy term of plans as they are returned, means over {table['seeds']} seeds; made by python -m benchmarks.plan knobs."]
-    return Section("Knobs", text, [TableView("Its own term over the knob's values", header, rows)], [picture])
-
-
 def training_section(encode: Json, train: Json, pictures: Sequence[Picture]) -> Section:
     """Return what the models learnt."""
     flat = {**{f"encoder: {k}": v for k, v in encode.items()}, **{f"denoiser: {k}": v for k, v in train.items()}}

@@ -1,7 +1,6 @@
 import torch
 
-from pipeline.baselines import logistic_mixture as logistics
-from pipeline.baselines.atiss import Autoregressive, loss, sample
+from pipeline.baselines.atiss import Autoregressive, draw, log_likelihood, loss, sample
 from pipeline.baselines.training import Trainer
 from tests.diffusion.small_world import CLASSES, LAYOUTS
 
@@ -11,9 +10,9 @@ def test_the_bins_of_a_mixture_sum_to_one_and_draws_follow_it():
     parameters = torch.randn(5, 3, 10, generator=rng)
     parameters[:, 2] -= 2
     middles = torch.linspace(-1, 1, 256)
-    chance = logistics.log_likelihood(parameters[:, None].expand(-1, 256, -1, -1), middles.expand(5, -1)).exp()
+    chance = log_likelihood(parameters[:, None].expand(-1, 256, -1, -1), middles.expand(5, -1)).exp()
     torch.testing.assert_close(chance.sum(1), torch.ones(5), atol=1e-3, rtol=0)
-    drawn = logistics.draw(parameters[:1].expand(20000, -1, -1), rng)
+    drawn = draw(parameters[:1].expand(20000, -1, -1), rng)
     torch.testing.assert_close(drawn.mean(), (chance[0] * middles).sum(), atol=0.02, rtol=0)
     assert float(drawn.abs().max()) <= 1
 

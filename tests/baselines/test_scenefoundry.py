@@ -6,9 +6,8 @@ import torch
 
 from pipeline import seeds
 from pipeline.baselines import diffuscene
-from pipeline.baselines.diffuscene import Denoiser, sample
+from pipeline.baselines.diffuscene import Denoiser, Levels, sample
 from pipeline.baselines.scenefoundry import Constraints, articulated_collision, loss, quantity, quantity_target
-from pipeline.baselines.schedule import Levels
 from pipeline.baselines.training import Trainer
 from tests.baselines.conftest import OPENS
 from tests.diffusion.small_world import LAYOUTS
@@ -137,9 +136,8 @@ def test_steps_between_levels_are_those_of_the_posterior():
 def trained(world, scaling, settings):
     """A denoiser that learnt the small rooms for a few seconds."""
     torch.manual_seed(0)
-    levels = Levels.linear(settings.timesteps)
     net = Denoiser(scaling, len(LAYOUTS), settings)
-    trainer = Trainer("toy", net, lambda n, r, f, rng: diffuscene.loss(n, levels, r, f, rng), settings, 0)
+    trainer = Trainer("toy", net, diffuscene.loss, settings, 0)
     losses = [trainer.step(*world, torch.ones(len(world[0]))).loss for _ in range(250)]
     assert sum(losses[-50:]) < 0.8 * sum(losses[:50])
     return trainer.average
@@ -157,24 +155,22 @@ def test_guidance_alone_gives_the_number_that_is_asked_for(trained, world, scali
 
 
 def test_without_penalty_eq_1_is_plain_denoising_and_with_it_the_target_moves_down(world, scaling, settings):
-    levels = Levels.linear(settings.timesteps)
     torch.manual_seed(1)
     net = Denoiser(scaling, len(LAYOUTS), replace(settings, iou_weight=0.0))
-    plain = diffuscene.loss(net, levels, *world, torch.Generator().manual_seed(2)).detach()
+    plain = diffuscene.loss(net, *world, torch.Generator().manual_seed(2)).detach()
     net.settings = replace(net.settings, train_quantity_scale=0.0, train_articulation_scale=0.0)
-    torch.testing.assert_close(loss(net, levels, *world, OPENS, torch.Generator().manual_seed(2)), plain)
+    torch.testing.assert_close(loss(net, *world, torch.Generator().manual_seed(2), OPENS), plain)
     net.settings = replace(net.settings, train_quantity_scale=500.0)
-    assert abs(float(loss(net, levels, *world, OPENS, torch.Generator().manual_seed(2)).detach() - plain)) > 1e-3
+    assert abs(float(loss(net, *world, torch.Generator().manual_seed(2), OPENS).detach() - plain)) > 1e-3
 
 
 def test_an_exact_prediction_has_no_loss_and_gives_x0_back(world, scaling, settings):
-    levels = Levels.linear(settings.timesteps)
     torch.manual_seed(3)
     net = Denoiser(scaling, len(LAYOUTS), settings)
-    x0, t, noise, x = diffuscene.add_noise(net, levels, world[1], torch.Generator().manual_seed(4))
-    alpha, sigma = levels.alpha[t][:, None, None], levels.sigma[t][:, None, None]
+    x0, t, noise, x = diffuscene.add_noise(net, world[1], torch.Generator().manual_seed(4))
+    alpha, sigma = net.levels.of(t)
     raw = alpha * noise - sigma * x0
-    assert float(diffuscene.denoising(net, levels, raw, x0, noise, t)) < 1e-9
+    assert float(diffuscene.denoising(net, raw, x0, noise, t)) < 1e-9
     torch.testing.assert_close(diffuscene.clean(raw, x, alpha, sigma), x0, atol=2e-3, rtol=0)
-    off = diffuscene.denoising(net, levels, raw + 0.1, x0, noise, t)
-    assert float(off) == pytest.approx(3 * 0.01 * float((levels.alpha[t] ** 2).mean()), rel=1e-3)
+    off = diffuscene.denoising(net, raw + 0.1, x0, noise, t)
+    assert float(off) == pytest.approx(3 * 0.01 * float((alpha**2).mean()), rel=1e-3)

@@ -1,7 +1,7 @@
 import pytest
 
 from pipeline.diffusion.codec import Normalisation
-from pipeline.diffusion.rooms import stacked_classes, stacked_rows
+from pipeline.diffusion.rooms import stacked
 from tests.diffusion.small_world import CLASSES, make_examples
 
 
@@ -12,4 +12,4 @@ def examples():
 
 @pytest.fixture(scope="session")
 def norm(examples):
-    return Normalisation.of(stacked_rows(examples), stacked_classes(examples), CLASSES)
+    return Normalisation.of(*stacked(examples), CLASSES)

@@ -83,9 +83,8 @@ def make_examples(count, seed=0) -> list[Example]:
     found = []
     for number in range(count):
         room, openings, objects = room_rows(seeds.generator(seed, "room", number), number)
-        context = context_of(room, openings)
         layout = LAYOUTS.index(room["layout_type"])
-        found.append(example_of(room, objects, context, "train", layout, CLASSES, latents, sweeps, 0.0))
+        found.append(example_of(f"h{number}/r0", "train", layout, context_of(room, openings), objects, CLASSES, latents, sweeps))
     return found
 
 

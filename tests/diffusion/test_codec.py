@@ -6,12 +6,13 @@ import numpy as np
 import torch
 
 from pipeline.diffusion.codec import CHANNELS, SIZE, YAW, Codec, Normalisation
-from pipeline.diffusion.rooms import stacked_classes, stacked_rows
+from pipeline.diffusion.rooms import stacked
 from tests.diffusion.small_world import CLASSES, make_context
 
 
 def rows_of(examples):
-    return torch.from_numpy(stacked_rows(examples)).float(), torch.from_numpy(stacked_classes(examples))
+    rows, classes = stacked(examples)
+    return torch.from_numpy(rows).float(), torch.from_numpy(classes)
 
 
 def test_rows_survive_the_round_trip(examples, norm):
@@ -33,8 +34,7 @@ def test_sizes_are_measured_within_their_class(examples, norm):
 
 
 def test_a_class_without_objects_has_finite_constants(examples):
-    rows, classes = stacked_rows(examples), stacked_classes(examples)
-    found = Normalisation.of(rows, classes, (*CLASSES, "unseen"))
+    found = Normalisation.of(*stacked(examples), (*CLASSES, "unseen"))
     assert np.isfinite(found.mean).all()
     assert np.min(found.scale) > 0
 

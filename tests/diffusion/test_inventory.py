@@ -25,7 +25,7 @@ BED, NIGHTSTAND, TABLE, CHAIR = (CLASSES.index(c) for c in ("double_bed", "night
 @pytest.fixture(scope="module")
 def rooms():
     made = make_examples(200)
-    features = np.stack([room_features(e.floor, e.height) for e in made])
+    features = np.stack([room_features(e.floor, e.context.height) for e in made])
     return Holdings(features, np.array([e.layout for e in made]), np.stack([counts_of(e.classes, len(CLASSES)) for e in made]))
 
 

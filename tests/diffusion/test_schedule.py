@@ -5,8 +5,7 @@ import pytest
 import torch
 
 from pipeline import seeds
-from pipeline.diffusion.schedule import FIRST, LAST, alpha_sigma, alpha_squared, lambda_of, levels, paper_levels
-from pipeline.diffusion.solver import alpha_sigma_of, denoise
+from pipeline.diffusion.schedule import FIRST, LAST, alpha_sigma, alpha_sigma_of, alpha_squared, denoise, lambda_of, levels, paper_levels
 
 
 def test_the_paper_s_schedule():

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import sfgen
-from benchmarks import formats
 from pipeline.export import FORMATS, ExportFolder, export_home
 from pipeline.export.stage import read_asset, read_home
+from tests.export import readings
 
 TOLERANCE = 1e-6
 
@@ -26,25 +26,25 @@ def exported(home, tmp_path_factory):
 def test_a_format_says_what_usd_says(home, exported, form):
     if form == "mjcf":
         pytest.importorskip("mujoco")
-    stage = formats.from_usd(home.usd)
+    stage = readings.from_usd(home.usd)
     assert len(stage.joints) == 4 + 3 * 3 + 1  # room doors; drawer, door and knob of three cabinets; a lid
     assert len(stage.bodies) == 4 * 2 + 3 * 4 + 2 + 1
-    found = formats.deviations(stage, formats.READERS[form](exported[form]))
+    found = readings.deviations(stage, readings.READERS[form](exported[form]))
     assert len(found) == 6
     assert max(found.values()) < TOLERANCE, found
 
 
 def test_a_deviation_is_seen(home):
-    stage = formats.from_usd(home.usd)
+    stage = readings.from_usd(home.usd)
     name, joint = next(iter(stage.joints.items()))
     moved = stage._replace(joints={**stage.joints, name: joint._replace(origin=joint.origin + np.array([0, 2e-6, 0]))})
-    assert formats.deviations(stage, moved)["origins [m]"] == pytest.approx(2e-6)
+    assert readings.deviations(stage, moved)["origins [m]"] == pytest.approx(2e-6)
     with pytest.raises(ValueError, match="not the same"):
-        formats.deviations(stage, stage._replace(joints={}))
+        readings.deviations(stage, stage._replace(joints={}))
 
 
 def test_the_joints_are_those_of_the_tables(home):
-    stage = formats.from_usd(home.usd)
+    stage = readings.from_usd(home.usd)
     for row in home.joints:
         joint = stage.joints[row.object_id, row.joint_id]
         assert np.allclose(joint.axis, row.axis, atol=1e-4)

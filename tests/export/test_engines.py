@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import sfgen
-from benchmarks.formats import steps
 from pipeline.export import ExportFolder, export_home
+from tests.export.readings import steps
 
 
 @pytest.fixture(scope="module")

@@ -5,10 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from benchmarks.planning import audit, failures
+from benchmarks.knobs import in_processes
+from benchmarks.plan import failures
 from pipeline.errors import RefusedError
 from pipeline.floorplan import FloorProgram, complete, solve
 from pipeline.floorplan.program.floor_program import Entrance, Footprint, Forbid, Link, Range, Relation, RoomReq, Shell
+from tests.floorplan import attempts, audit
 
 PROGRAM = complete(
     FloorProgram(
@@ -145,8 +147,8 @@ def test_a_failure_is_counted_and_does_not_stop_the_run(monkeypatch, capsys, err
     def fails(program, seed):
         raise error
 
-    monkeypatch.setattr(failures, "solve", fails)
-    assert failures.main(2, 5, ("prior",), jobs=1) == 2
+    monkeypatch.setattr(attempts, "solve", fails)
+    assert failures(2, 5, ("prior",), 1) == 2
     said = capsys.readouterr().out
     assert all(f"prior {k}: {kind}" in said for k in (5, 6))
 
@@ -181,20 +183,6 @@ def test_outside_walls_are_no_thinner_than_those_between_rooms():
 
 
 def test_processes_give_what_one_gives():
-    assert [bad for _, bad in failures.attempts("trees", 0, 3, 2)] == [bad for _, bad in failures.attempts("trees", 0, 3, 1)]
-
-
-def test_small_samples_leave_the_record_alone(monkeypatch, tmp_path):
-    monkeypatch.setattr(failures.record, "RECORDS", tmp_path)
-    monkeypatch.setattr(failures, "LEAST", 4)
-    monkeypatch.setattr(
-        failures,
-        "attempts",
-        lambda source, start, count, jobs: iter([(0.1, ["fault: x"] if k == 5 else []) for k in range(start, start + count)]),
-    )
-    failures.main(3, 3, ("trees",))
-    assert failures.record.read(failures.RECORD) == {}
-    failures.main(4, 3, ("trees",))
-    found = failures.record.read(failures.RECORD)["trees"]
-    assert [f["seed"] for f in found["figures"]["failures"]] == [5]
-    assert found["command"].endswith("--count 4")
+    work = [("trees", number) for number in range(3)]
+    two, one = ([bad for _, bad in in_processes(attempts.attempt, work, jobs)] for jobs in (2, 1))
+    assert two == one

@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from benchmarks.planning import failures
 from pipeline.entities.plan import Room
 from pipeline.floorplan.realise.realisation import NARROW, _is_narrow
+from tests.floorplan.attempts import attempt
 
 
 @pytest.mark.parametrize("number", [461, 620, 705, 1019, 2288])
 def test_programs_of_the_prior_that_failed_once(number):
-    assert failures.attempt("prior", number)[1] == []
+    assert attempt(("prior", number))[1] == []
 
 
 def test_a_program_of_an_independent_generator_that_failed_once():
-    assert failures.attempt("trees", 626)[1] == []
+    assert attempt(("trees", 626))[1] == []
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,8 @@ import torch
 
 from pipeline import seeds
 from pipeline.errors import ContentError
-from pipeline.latents.settings import EncodeSettings
 from pipeline.latents.training import encode, init_vae, train
-from pipeline.latents.vae import chamfer, kl_to_standard_normal
-from pipeline.latents.weights import load_vae, save_vae
+from pipeline.latents.vae import EncodeSettings, chamfer, kl_to_standard_normal, load_vae, save_vae
 
 CPU = torch.device("cpu")
 SMALL = EncodeSettings(points=128, train_points=96, decoded_points=64, width=16, steps=60, batch=8)

@@ -30,8 +30,3 @@ def test_both_directions():
 
 def test_a_missing_category_is_finite_and_large():
     assert 5 < ckl(rows(bed=1, chair=1), rows(bed=1), NAMES)["real_to_generated"] < 14
-
-
-def test_unknown_categories_are_named():
-    with pytest.raises(ValueError, match="lamp"):
-        frequencies(["lamp"], NAMES)

@@ -98,7 +98,6 @@ def test_two_extended_boxes_meet_only_in_the_papers_metric():
     # Two chests face each other at 60 cm: each opens, both at once do not (b' against b', paper eq. acoll_metric).
     rows = [object_row("chest", 2.0, 2.0), object_row("chest", 2.0, 2.0 - 0.5 - 0.6, math.pi, number=1)]
     assert articulation.are_obstructed(rows, "joints", SWEEPS) == [True, True]
-    assert articulation.are_obstructed(rows, "joints", SWEEPS, both=False) == [False, False]
 
 
 def test_swept_counts_objects_joints_and_doors():

@@ -90,7 +90,9 @@ def test_a_write_that_fails_ends_the_run_and_nothing_is_lost(tmp_path, monkeypat
 
 @pytest.mark.slow
 def test_killed_again_and_again():
-    """Alone and in pairs, as `make bench` does it a thousand times."""
-    done = subprocess.run([sys.executable, str(ROOT / "benchmarks" / "crashes.py"), "0", "12"], capture_output=True, text=True, check=False)
+    """Alone and in pairs, as `python tests/shards/kills.py` does it a thousand times."""
+    done = subprocess.run(
+        [sys.executable, str(ROOT / "tests" / "shards" / "kills.py"), "0", "12"], capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     assert "12 kills" in done.stdout

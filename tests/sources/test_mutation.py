@@ -1,4 +1,4 @@
-"""A few of the files that `python -m benchmarks.hostile` changes by chance: each read or refused with a known reason, within the budget."""
+"""A few of the files that `python -m tests.sources.hostile` changes by chance: each read or refused with a known reason, within the budget."""
 
 from pipeline.sources.reasons import REASONS
 from tests.sources import mutation

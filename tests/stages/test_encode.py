@@ -6,7 +6,7 @@ import pytest
 from pipeline import params, seeds, tables
 from pipeline.entities.files import load_asset, save_asset
 from pipeline.errors import ContentError
-from pipeline.latents.weights import load_vae
+from pipeline.latents.vae import load_vae
 from pipeline.rendering.surface_colour import finish_of
 from schemas.assets import ASSETS, LATENTS
 from stages import encode

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.language import faults
 from pipeline.floorplan import parse
 from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
+from tests.floorplan.language.faults import faults
 
 SAID = [
     ("Un appartement de 70 m² avec deux chambres, une salle de bain et une cuisine ouverte sur le salon.",

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.language import faults
 from pipeline.floorplan import parse, request
 from pipeline.floorplan.language import frames
 from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
 from pipeline.floorplan.program.consistency import ImpossibleError
+from tests.floorplan.language.faults import faults
 
 KINDS = {
     "wish", "people", "fill", "ignored", "needless", "activity", "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "dash", "det", "enough", "enter", "every", "factor", "fix", "flag", "home", "hyphen", "join", "level", "look", "neg", "num",

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from benchmarks.language import faults, load
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import parse
 from pipeline.floorplan.language.parser import MOST_WORDS, understand
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.program.consistency import ImpossibleError
+from tests.floorplan.language.faults import faults, load
 
 CASES = load()
 UNREAD = {"zh25", "zh40"}  # one bathroom or two; a house "of one bedroom" with three

@@ -12,13 +12,14 @@ from pathlib import Path
 import pytest
 import yaml
 
-from benchmarks.language import faults, replay_engine
+from benchmarks.language import replay_engine
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import complete
 from pipeline.floorplan.language import llm
 from pipeline.floorplan.language.llm import Server, UnansweredError, ask, server_from_env
 from pipeline.floorplan.program.consistency import check
 from pipeline.floorplan.prompt import request
+from tests.floorplan.language.faults import faults
 
 GOOD = json.dumps(
     {

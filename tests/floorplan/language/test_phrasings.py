@@ -1,6 +1,6 @@
 """Tables of ways to say one thing: each sentence, alone and behind a list of rooms, with every choice of rooms.
 
-`phrasings/LANG.yaml`: `what` is said, what it `gives` (a case of benchmarks.language with a, b, c, d for the rooms of a choice) and the sentences that `say` it.
+`phrasings/LANG.yaml`: `what` is said, what it `gives` (a case of faults.py with a, b, c, d for the rooms of a choice) and the sentences that `say` it.
 `python -m tests.floorplan.language.test_phrasings [LANG]` prints the sentences that are read wrongly, and the share that is read.
 """
 
@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import pytest
 import yaml
 
-from benchmarks.language import faults
 from pipeline.floorplan import parse
+from tests.floorplan.language.faults import faults
 
 TABLES = Path(__file__).resolve().parent / "phrasings"
 LANGUAGES = sorted(p.stem for p in TABLES.glob("*.yaml"))

@@ -5,9 +5,9 @@ import re
 
 import pytest
 
-from benchmarks.language import FILES, faults, load
 from pipeline.errors import RefusedError
 from pipeline.floorplan import parse
+from tests.floorplan.language.faults import FILES, faults, load
 
 HALL = {"hallway": 1, "living_room": 1, "kitchen": 1, "bathroom": 1}
 HALL_LINKS = [["hallway", "living_room", "*"], ["hallway", "kitchen", "*"], ["bathroom", "hallway", "*"]]

@@ -2,10 +2,10 @@
 
 import pytest
 
-from benchmarks.language import FILES, faults, load
 from pipeline.errors import RefusedError
 from pipeline.floorplan import parse
 from pipeline.floorplan.language.parser import understand
+from tests.floorplan.language.faults import FILES, faults, load
 
 CASES = [c for f in FILES for c in load(f) if not c.get("refused")]
 NAMED = 0.95  # of the misread prompts at least; 31 of 31 when it was written

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 import yaml
 
-from benchmarks.language import faults
 from pipeline.floorplan import parse
+from tests.floorplan.language.faults import faults
 
 FOLDER = Path(__file__).parent / "ways"
 LANGUAGES = sorted(p.stem for p in FOLDER.glob("*.yaml"))
@@ -28,7 +28,7 @@ def _typed(value: Any, types: Mapping[str, str]) -> Any:
 
 
 def cases(language: str) -> Iterator[tuple[str, dict[str, Any], str]]:
-    """Return (meaning, case for `benchmarks.language.faults`, reason why it is known to fail) for every way and choice."""
+    """Return (meaning, case for `tests.floorplan.language.faults`, reason why it is known to fail) for every way and choice."""
     table = yaml.safe_load((FOLDER / f"{language}.yaml").read_text(encoding="utf-8"))
     for entry in table["meanings"]:
         for way in entry["ways"]:

@@ -1,8 +1,8 @@
 """Power cuts and kills: nothing is lost, and nothing is wrong and not noticed.
 
-    python benchmarks/crashes.py [power cuts] [kills]
+    python tests/shards/kills.py [power cuts] [kills]
 
-Replays what power cuts may leave of a small dataset (tests/shards/powercut.py), checks and recovers each distinct state; then kills
+Replays what power cuts may leave of a small dataset (powercut.py), checks and recovers each distinct state; then kills
 commands with SIGKILL at random moments of their work, alone and in pairs on one dataset, and starts them again until it is whole, again
 and again. By default 100,000 and 1,000: about an hour of one core.
 """
@@ -19,8 +19,8 @@ from pathlib import Path
 
 import pyarrow as pa
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "shards")]
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT)]
 import crashes  # noqa: E402 - the tests' own checks, over more states
 import made  # noqa: E402
 

@@ -1,11 +1,9 @@
-"""The knob experiment: programs in which every term can move, what counts as monotone, and what the report says of it."""
+"""The knob experiment: programs in which every term can move, what counts as monotone, and the picture of it."""
 
 import pytest
 
-from pipeline.experiments.knobs import VALUES, knob_picture, knob_table, monotone, subjects
+from benchmarks.knobs import VALUES, draw, knob_table, monotone, subjects
 from pipeline.floorplan.search.energy import TERMS
-from pipeline.report.page import Picture
-from pipeline.report.sections import knob_section
 
 
 @pytest.fixture(scope="module")
@@ -14,8 +12,8 @@ def table():
 
 
 def test_every_knob_has_a_program_and_a_row_per_value(table):
-    assert list(subjects()) == list(table["terms"]) == list(TERMS)
-    for found in table["terms"].values():
+    assert list(subjects()) == list(table) == list(TERMS)
+    for found in table.values():
         assert len(found["mean"]) == len(found["error"]) == len(VALUES) == len(found["step"]) + 1
         assert found["ends"][0] == pytest.approx(sum(step for step, _ in found["step"]), abs=1e-4)
 
@@ -34,8 +32,6 @@ def test_monotone_needs_steps_and_ends(steps, ends, falls):
     assert monotone({"step": steps, "ends": ends}) is falls
 
 
-def test_the_report_shows_what_was_measured(table):
-    assert knob_picture(table).startswith(b"\x89PNG")
-    view = knob_section(table, Picture("plots/knobs.png", "")).tables[0]
-    assert [row[0] for row in view.rows] == [name.replace("_", " ") for name in TERMS]
-    assert all(len(row) == len(view.header) for row in view.rows)
+def test_the_table_is_drawn(table, tmp_path):
+    draw(table, 2, tmp_path / "knobs.png")
+    assert (tmp_path / "knobs.png").read_bytes().startswith(b"\x89PNG")

@@ -1,8 +1,8 @@
 """Files changed by chance, each read within 2 s of processor time and 256 MiB: what became of them, and what they cost.
 
-    python -m benchmarks.hostile [files]
+    python -m tests.sources.hostile [files]
 
-Good files of fifteen kinds are damaged by the generator of the tests (`tests/sources/mutation.py`): bits turned, numbers made absurd, pieces
+Good files of fifteen kinds are damaged by the generator of the tests (`mutation.py`): bits turned, numbers made absurd, pieces
 cut, moved or repeated up to 4 MiB, nested brackets, the end cut off. Nothing is random: file k is the same on every machine.
 """
 

@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import shapely
 
-from benchmarks.planning import apertures
 from pipeline.entities.plan import Plan, Room
 from pipeline.floorplan.program.defaults import OUTSIDE
 from pipeline.floorplan.program.floor_program import FloorProgram
+from tests.floorplan import apertures
 
 DEAD = frozenset({"bathroom", "wc"})
 BEHIND_BEDROOMS = frozenset({"bathroom", "wc", "closet", "balcony", "storage", "office", "sunroom", "utility"})
