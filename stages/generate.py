@@ -56,7 +56,7 @@ def main(
             progress.phase("writing the assets")
             assumed = assumptions(program) if source is None else []
             files = {**outcome.files, **drawings(outcome.home, program, repairs, assumed)}
-            add_part(dataset, 0, gather(0, [(outcome.rows, files)]))
+            add_part(dataset, 0, gather(0, outcome.rows, files))
             commit_shard(dataset, 0)
     progress.close()
     styles = {p.asset_id: str(factory.library.rows[p.asset_id]["style"]) for p in outcome.home.placements}
