@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pipeline.entities.home import Home
 from pipeline.execution import Progress, Voice, single_thread
-from pipeline.execution.messages import listen
+from pipeline.execution.progress import listen
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.draw.drawing import svg
 from pipeline.floorplan.imports import describe_repairs, program_of, read_own

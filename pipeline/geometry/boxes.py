@@ -24,19 +24,13 @@ def overlap_areas(a: Floats, b: Floats) -> Floats:
     return clipped_areas(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64))
 
 
-def volumes(size: Floats) -> Floats:
-    """Return the volume (N,) [m3]."""
-    volume: Floats = np.prod(size, axis=-1)
-    return volume
-
-
 def iou_3d(position_a: Floats, yaw_a: Floats, size_a: Floats, position_b: Floats, yaw_b: Floats, size_b: Floats) -> Floats:
     """Return the 3-D intersection over union (P,) of P pairs of boxes; positions (P, 3) are bottom centres."""
     shared = overlap_areas(footprints(position_a, yaw_a, size_a), footprints(position_b, yaw_b, size_b))
     top = np.minimum(position_a[:, 2] + size_a[:, 2], position_b[:, 2] + size_b[:, 2])
     height = np.maximum(top - np.maximum(position_a[:, 2], position_b[:, 2]), 0.0)
     inter = shared * height
-    union = volumes(size_a) + volumes(size_b) - inter
+    union = size_a.prod(axis=-1) + size_b.prod(axis=-1) - inter
     return np.where(union > 0, inter / np.maximum(union, 1e-12), 0.0)
 
 

@@ -36,15 +36,6 @@ def gap(a: Floats, b: Floats) -> float:
 
 
 @compiled
-def gaps(a: Floats, b: Floats) -> Floats:
-    """Return `gap` of P pairs: (P, V, 2) and (P, W, 2) -> (P,)."""
-    distances = np.empty(a.shape[0])
-    for k in range(a.shape[0]):
-        distances[k] = gap(a[k], b[k])
-    return distances
-
-
-@compiled
 def clipped_area(a: Floats, b: Floats) -> float:
     """Return the area [m2] of the intersection (Sutherland and Hodgman 1974: `a` is cut by each edge of `b`)."""
     room = a.shape[0] + b.shape[0] + 2

@@ -17,7 +17,7 @@ from typing import Any
 
 from pipeline import tables
 from pipeline.errors import ContentError, SfgenError
-from pipeline.execution import Lost, Progress, map_jobs
+from pipeline.execution import Lost, Progress, map_divisible
 from pipeline.homes.factory import Factory, forget_factory
 from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.outcomes import Empty, Outcome
@@ -154,12 +154,12 @@ def fill(
     spent = dict.fromkeys(missing, 0.0)  # CPU seconds by shard, and seconds of waiting for workers that kept silent
     while missing:
         found = chunks(dataset, missing, asked, factory.chunk, workers)
-        done = map_jobs(
+        done = map_divisible(
             partial(make_chunk, recipe),
             (replace(c, overdue=spent[c.shard] > allowed_seconds(dataset, factory.shard, c.shard)) for c in found),
+            Chunk.pieces,
             workers=min(workers, -(-todo // LEAST)),
             scheduler=scheduler,
-            split=Chunk.pieces,
             note=watch.heard,
             silence=factory.shard.home_seconds,
         )

@@ -68,7 +68,8 @@ def command(capsys, monkeypatch, tmp_path):
     monkeypatch.delenv("SFGEN_DEBUG", raising=False)
 
     def run(root, *arguments):
-        monkeypatch.setattr(cli, "factory_root", lambda: root)
+        monkeypatch.setattr(cli, "ROOT", root)
+        monkeypatch.setattr(cli, "is_checkout", lambda: True)
         code = cli.run(arguments)
         return SimpleNamespace(returncode=code, stderr=capsys.readouterr().err)
 
