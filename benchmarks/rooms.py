@@ -98,8 +98,7 @@ def drafts_of_real(factory: Factory, jobs: Sequence[RoomJob], names: Sequence[st
     from pipeline import tables, taxonomy
     from pipeline.diffusion.context import Proposal, RoomContext
     from pipeline.homes.furnish import retrieve
-    from schemas.assets import LATENTS
-    from schemas.objects import OBJECTS
+    from schemas import LATENTS, OBJECTS
 
     known, data = taxonomy.load(), ROOT / "data"
     latents = {row["asset_id"]: np.array(row["latent"], np.float32) for row in tables.read(data / "latents" / "latents.parquet", LATENTS)}
@@ -207,9 +206,7 @@ def main(count: int, seeds: int) -> None:
     from pipeline.metrics.two_samples import forest_accuracy
     from pipeline.metrics.views import features_once
     from pipeline.relations import files
-    from schemas.openings import OPENINGS
-    from schemas.rooms import ROOMS
-    from schemas.scenes import SCENES
+    from schemas import OPENINGS, ROOMS, SCENES
 
     tree, folder = params.read(ROOT / "params.yaml"), ROOT / "data" / "tables"
     source = {t.name: tables.read(folder / f"{t.name}.parquet", t) for t in (SCENES, ROOMS, OPENINGS)}

@@ -19,11 +19,7 @@ from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.training import Loss, Trainer
 from pipeline.diffusion.rooms import Sets, layout_weights, sets_of
 from pipeline.errors import ContentError
-from schemas.assets import LATENTS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import LATENTS, OBJECTS, OPENINGS, ROOMS, SCENES
 
 INPUTS = {"scenes": SCENES, "rooms": ROOMS, "openings": OPENINGS, "objects": OBJECTS}
 NETS = ("diffuscene", "atiss", "scenefoundry")  # what is trained; PhyScene-type guidance steers the first

@@ -21,11 +21,7 @@ from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.training import Rooms, Trainer
 from pipeline.errors import ContentError
 from pipeline.manifest import digest, sha256_file
-from schemas.assets import ASSET_JOINTS, LATENTS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import ASSET_JOINTS, LATENTS, OBJECTS, OPENINGS, ROOMS, SCENES
 
 INPUTS = {"scenes": SCENES, "rooms": ROOMS, "openings": OPENINGS, "objects": OBJECTS}
 CHECKPOINT = "models/checkpoint/denoiser.safetensors"

@@ -19,7 +19,7 @@ from pipeline.manifest import digest, write_json
 from pipeline.shards import code_digest
 from pipeline.shards.commits import read_file, record
 from pipeline.usd.library import write_asset
-from schemas.assets import ASSET_JOINTS, ASSETS
+from schemas import ASSET_JOINTS, ASSETS
 from schemas.table import Table
 
 MOST = 2 << 30  # bytes of all versions together

@@ -11,12 +11,7 @@ commits/assets.json               the same for the library
 .staging/<token>/                 what a command is writing
 """
 
-from schemas.joints import JOINTS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import JOINTS, OBJECTS, OPENINGS, REJECTS, ROOMS, SCENES
 
 TABLES = {table.name: table for table in (SCENES, ROOMS, OPENINGS, OBJECTS, JOINTS, REJECTS)}
 HEADER = "dataset.json"

@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from pipeline import entry, tables
-from schemas.rejects import REJECTS
+from schemas import REJECTS
 from sfgen import cli
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from pipeline.shards import EMPTY, TABLES, Header, add_part, commit_shard, gather, is_committed, open_or_create, scene_id
-from schemas.assets import ASSETS
+from schemas import ASSETS
 
 HEADER = Header(seed=5, count=10, shard_size=4, licence="CC0-1.0", digests={"params": "p" * 64, "weights": "w" * 64})
 
