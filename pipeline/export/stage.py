@@ -10,10 +10,9 @@ import numpy as np
 from pxr import Pcp, Sdf, Usd, UsdGeom, UsdPhysics
 
 from pipeline.errors import ContentError
-from pipeline.export.frames import inverse, world
 from pipeline.export.joints import read_joints
-from pipeline.export.model import Body, Floats, Inertia, Model, Placed, Scene
-from pipeline.export.pieces import read_pieces
+from pipeline.export.model import Body, Floats, Inertia, Model, Placed, Scene, inverse
+from pipeline.export.pieces import read_pieces, world
 
 VARIANT = "MuJoCo"
 GROUPS = {"Rooms": "room", "Walls": "wall", "Windows": "window", "Doors": "door", "Objects": "object"}

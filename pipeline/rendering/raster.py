@@ -55,9 +55,9 @@ class Frame:
     item: NDArray[np.int32]
 
 
-def top_down(low: NDArray[np.float64], high: NDArray[np.float64], width: int, height: int, margin: float = 0.0) -> View:
-    """Look straight down at the plan rectangle low..high (2,), +y up in the image; `margin` [m] is left around it."""
-    span = np.maximum(high - low + 2 * margin, 1e-3)
+def top_down(low: NDArray[np.float64], high: NDArray[np.float64], width: int, height: int) -> View:
+    """Look straight down at the plan rectangle low..high (2,), +y up in the image."""
+    span = np.maximum(high - low, 1e-3)
     axes = np.array([[1.0, 0, 0], [0, -1.0, 0], [0, 0, 1.0]])
     centre = np.array([*(low + high) / 2, 0.0])
     return View(axes, centre, float(min(width / span[0], height / span[1])), width, height)
