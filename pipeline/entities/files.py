@@ -75,7 +75,7 @@ def _decode(header: dict[str, Any], tensors: dict[str, np.ndarray[Any, Any]]) ->
     links = [
         _record(Link, {**e, **{kind: meshes(i, kind, e[kind]) for kind in ("visuals", "colliders")}}) for i, e in enumerate(header["links"])
     ]
-    records = {kind: tuple(_record(cls, entry) for entry in header.get(kind, ())) for kind, cls in RECORDS.items()}
+    records: dict[str, Any] = {kind: tuple(_record(cls, entry) for entry in header.get(kind, ())) for kind, cls in RECORDS.items()}
     textures = {k.removeprefix("texture."): v.tobytes() for k, v in tensors.items() if k.startswith("texture.")}
     return Asset(size=np.array(header["size"]), links=tuple(links), textures=textures, **records, **{k: header[k] for k in PLAIN})
 
