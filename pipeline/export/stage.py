@@ -19,14 +19,10 @@ GROUPS = {"Rooms": "room", "Walls": "wall", "Windows": "window", "Doors": "door"
 REMEDY = "run `sfgen verify` on the dataset; if it is whole, please report it"
 
 
-def overlay_of(stage: Path) -> Path:
-    """Return where the overlay for MuJoCo of a home's stage lies."""
-    return stage.with_name(f"{stage.stem}.mujoco.usda")
-
-
 def read_home(path: Path, scene_id: str, asset: Callable[[Path], Model]) -> Scene:
     """Read a home; `asset` reads (or remembers) the model in an asset's interface file."""
-    stage = Usd.Stage.Open(str(overlay if (overlay := overlay_of(path)).is_file() else path))
+    overlay = path.with_name(f"{path.stem}.mujoco.usda")
+    stage = Usd.Stage.Open(str(overlay if overlay.is_file() else path))
     cache = UsdGeom.XformCache()
     models: dict[str, Model] = {}
     placed = []

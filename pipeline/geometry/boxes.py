@@ -4,9 +4,8 @@ Boxes turn about +Z only. Footprint corners are counter-clockwise from the objec
 """
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
-
-from pipeline.geometry.convex import clipped_areas
 
 Floats = NDArray[np.float64]
 
@@ -20,8 +19,11 @@ def footprints(position: Floats, yaw: Floats, size: Floats) -> Floats:
 
 
 def overlap_areas(a: Floats, b: Floats) -> Floats:
-    """Return the area (P,) [m2] shared by P pairs of convex polygons (P, V, 2), counter-clockwise."""
-    return clipped_areas(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64))
+    """Return the area (P,) [m2] shared by P pairs of polygons (P, V, 2)."""
+    areas = np.zeros(len(a))
+    near = np.flatnonzero(((a.min(axis=1) < b.max(axis=1)) & (b.min(axis=1) < a.max(axis=1))).all(axis=1))
+    areas[near] = shapely.area(shapely.intersection(shapely.polygons(a[near]), shapely.polygons(b[near])))
+    return areas
 
 
 def iou_3d(position_a: Floats, yaw_a: Floats, size_a: Floats, position_b: Floats, yaw_b: Floats, size_b: Floats) -> Floats:

@@ -83,7 +83,6 @@ def test_hull_is_that_of_shapely(seed, n):
 def test_compiled_and_plain_agree():
     a, b = boxes.footprints(*random_boxes(6, 30)), boxes.footprints(*random_boxes(7, 30))
     for k in range(30):
-        assert convex.clipped_area.py_func(a[k], b[k]) == pytest.approx(convex.clipped_area(a[k], b[k]), abs=1e-12)
         assert convex.gap.py_func(a[k], b[k]) == pytest.approx(convex.gap(a[k], b[k]), abs=1e-12)
         x, y = b[k].mean(0)
         assert convex.distance_to(x, y, a[k]) == pytest.approx(shapely.distance(shapely.Polygon(a[k]), shapely.Point(x, y)), abs=1e-12)
