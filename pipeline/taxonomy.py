@@ -30,7 +30,7 @@ class RoomType:
     `furnished_as` is the layout type, "": it stays empty; `functions` what it serves as where that may be several things; `unwanted` what it has not, though others furnished so have,
     and `usual` what it has oftener than they.
     `entered_from` are the types that it is entered from where nobody says, the usual one first, () for any hub; what `belongs` is entered from what it lies next to.
-    `floor` and `wall` are names of rendering/palette.py.
+    `floor` and `wall` are names of manifests/materials.yaml.
     """
 
     area: float

@@ -1,18 +1,23 @@
-"""What a table is: ordered columns, each with Arrow type, unit, frame and doc, kept in the Parquet metadata."""
+"""What a table is: ordered columns, each with Arrow type, unit, frame and doc, kept in the Parquet metadata; read from a file a table."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import yaml
 
 SCHEMA_VERSION = "2"  # 2: joints say which others they wait for; furniture is counted apart from small things
 
-VEC2 = pa.list_(pa.float64(), 2)
-VEC3 = pa.list_(pa.float64(), 3)
-NAMES = pa.list_(pa.string())
-LATENT = pa.list_(pa.float32(), 32)
-POLYGON = pa.list_(VEC2)
+TYPES = {
+    "bool": pa.bool_(),
+    "float32": pa.float32(),
+    "float64": pa.float64(),
+    "int32": pa.int32(),
+    "int64": pa.int64(),
+    "string": pa.string(),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,3 +60,19 @@ class Table:
                 msg = f"table {self.name}: columns {odd} are missing or unknown"
                 raise ValueError(msg)
         return pa.Table.from_pydict({n: [row[n] for row in listed] for n in names}, schema=self.schema())
+
+
+def arrow_type(text: str) -> pa.DataType:
+    """Return the Arrow type of `float64`, `float64[3]` (three of them), `string[]` (any number of them), `float64[2][]`."""
+    inner, bracket, size = text.removesuffix("]").rpartition("[")
+    if not bracket:
+        return TYPES[text]
+    return pa.list_(arrow_type(inner), int(size)) if size else pa.list_(arrow_type(inner))
+
+
+def read_table(name: str) -> Table:
+    """Read a table's file, `<name>.yaml` beside this one."""
+    text = Path(__file__).with_name(f"{name}.yaml").read_text(encoding="utf-8")
+    entries = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text).get_single_data()  # in C, where PyYAML has it
+    columns = (Column(column, **{**about, "type": arrow_type(about["type"])}) for column, about in entries["columns"].items())
+    return Table(name, entries["doc"], tuple(columns))

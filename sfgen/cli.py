@@ -16,6 +16,8 @@ from typing import Annotated, Any
 
 import typer
 
+ROOT = Path(__file__).resolve().parents[1]  # the checkout that this package lies in, if it does
+
 PROMPT_HELP = "What the home shall be, in words."
 SEED_HELP = "Every random choice follows from it."
 
@@ -65,10 +67,8 @@ def generate(
     """
     if not prompt and not plan:
         raise Complaint("the prompt is empty; give PROMPT, or --plan FILE", 2)
-    root = factory_root()
-    stage("generate").main(
-        root, prompt=prompt, out=out, seed=seed, source=plan, house=house, strict=strict, voice=voice(quiet=quiet, json=json)
-    )
+    how = voice(quiet=quiet, json=json)
+    stage("generate").main(ROOT, prompt=prompt, out=out, seed=seed, source=plan, house=house, strict=strict, voice=how)
 
 
 @app.command()
@@ -103,12 +103,9 @@ def shard(
     """
     if out and re.match(r"[a-z][a-z0-9+]+:/(?!/)", out):
         raise Complaint(f"{out} is an address that lacks a slash; write {out.replace(':/', '://', 1)}, or ./{out} for a folder", 2)
-    root = factory_root()
-    begin("homes", voice(quiet=quiet, json=json))
-    place: dict[str, Any] = {"address": out} if out and "://" in out else {"out": Path(out) if out else None}
-    options = {**place, "seed": seed, "workers": workers, "prompts": prompts, "scheduler": scheduler, "strict": strict, "only": only}
-    options |= {"memory": memory, "preview": preview}
-    code: int = stage("shard").main(root, count=count, **options, voice=voice(quiet=quiet, json=json))
+    options = {"seed": seed, "workers": workers, "prompts": prompts, "scheduler": scheduler, "strict": strict, "only": only}
+    how = voice(quiet=quiet, json=json)
+    code: int = stage("shard", begins=("homes", how)).main(ROOT, count=count, out=out, **options, memory=memory, preview=preview, voice=how)
     return code
 
 
@@ -141,14 +138,13 @@ def plan(
         raise Complaint(f"{said}; give one of PROMPT, --from FILE, --prompts FILE --score, --schema", 2)
     if bool(prompts) != score:
         raise Complaint("--prompts and --score go together; give both or neither", 2)
-    root = factory_root()
     module = stage("plan")
     if schema:
-        module.schema(root)
+        module.schema(ROOT)
     elif prompts:
-        module.score(root, prompts=prompts, seeds=seeds, json_path=json)
+        module.score(ROOT, prompts=prompts, seeds=seeds, json_path=json)
     else:
-        module.main(root, prompt=prompt, seed=seed, source=source, house=house, json_path=json, svg_path=svg, png_path=png, strict=strict)
+        module.main(ROOT, prompt=prompt, seed=seed, source=source, house=house, json_path=json, svg_path=svg, png_path=png, strict=strict)
 
 
 @app.command()
@@ -162,8 +158,7 @@ def peers(
     Example:
       sfgen peers --out peers/ --filtered
     """
-    root = factory_root()
-    stage("peers").main(root, out=out, filtered=filtered)
+    stage("peers").main(ROOT, out=out, filtered=filtered)
 
 
 @app.command()
@@ -180,8 +175,7 @@ def export(
       sfgen export data/shards --to mjcf --out exported/mjcf
       sfgen export datasets/7 --to glb --home s7_00000003 --out exported/glb
     """
-    root = factory_root()
-    stage("export").main(root, dataset=dataset, to=to.value, out=out, homes=home or ())
+    stage("export").main(ROOT, dataset=dataset, to=to.value, out=out, homes=home or ())
 
 
 @app.command()
@@ -203,10 +197,8 @@ def verify(
     how, local = voice(quiet=quiet, json=json), "://" not in folder
     if local and not Path(folder).is_dir():
         raise Complaint(f"{folder} is {'not a folder' if Path(folder).exists() else 'missing'}; give the folder of a dataset", 2)
-    if reproduce or (local and checkout()):
-        root = factory_root()
-        options = {"quick": quick, "reproduce": reproduce, "prompts": prompts}
-        code: int = stage("verify").main(root, folder=Path(folder), **options, voice=how)
+    if reproduce or (local and is_checkout()):
+        code: int = stage("verify").main(ROOT, folder=Path(folder), quick=quick, reproduce=reproduce, prompts=prompts, voice=how)
         return code
     from dataclasses import asdict
 
@@ -237,10 +229,8 @@ def repair(
     Example:
       sfgen repair datasets/7
     """
-    root = factory_root()
     how = voice(quiet=quiet, json=json)
-    begin("homes", how)
-    code: int = stage("shard").repair(root, folder=folder, prompts=prompts, workers=workers, voice=how)
+    code: int = stage("shard", begins=("homes", how)).repair(ROOT, folder=folder, prompts=prompts, workers=workers, voice=how)
     return code
 
 
@@ -260,11 +250,10 @@ def doctor(
       sfgen doctor --use /data/3d-front --use /data/partnet-mobility
       sfgen doctor --use embedded
     """
-    root = factory_root()
     if use:
-        stage("adopt").main(root, use)
+        stage("adopt").main(ROOT, use)
     else:
-        stage("doctor").main(root, voice=voice(quiet=False, json=json))
+        stage("doctor").main(ROOT, voice=voice(quiet=False, json=json))
 
 
 @app.callback(invoke_without_command=True)
@@ -298,25 +287,23 @@ class Complaint(Exception):  # noqa: N818 - not an error of the program
         super().__init__(text)
 
 
-def checkout() -> Path | None:
-    """Return the checkout that this package lies in; None for a bare wheel."""
-    root = Path(__file__).resolve().parents[1]
-    return root if (root / "dvc.yaml").is_file() and (root / "stages").is_dir() else None
+def is_checkout() -> bool:
+    """Tell whether this package lies in a checkout; a bare wheel does not."""
+    return (ROOT / "dvc.yaml").is_file() and (ROOT / "stages").is_dir()
 
 
-def factory_root() -> Path:
-    """Return the checkout that this package lies in, and make its code importable. Raises Complaint from a bare wheel."""
-    root = checkout()
-    if root is None:
+def stage(name: str, begins: tuple[str, str] | None = None) -> Any:
+    """Import what a command does, and say before that it `begins` (label, voice). Raises Complaint from a bare wheel.
+
+    Heavy packages come with it, of which nothing is ever garbage: collecting waits until they are there.
+    """
+    if not is_checkout():
         text = "this command needs the factory, and only the loaders are installed; clone sfgen's repository and type `make run` in it"
         raise Complaint(text, 1)
-    if str(root) not in sys.path:
-        sys.path.insert(0, str(root))
-    return root
-
-
-def stage(name: str) -> Any:
-    """Import what a command does; heavy packages come with it, of which nothing is ever garbage: collecting waits until they are there."""
+    if begins:
+        begin(*begins)
+    if str(ROOT) not in sys.path:
+        sys.path.insert(0, str(ROOT))
     gc.disable()
     try:
         return importlib.import_module(f"stages.{name}")

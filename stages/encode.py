@@ -23,7 +23,7 @@ from pipeline.latents.training import encode, init_vae, train
 from pipeline.latents.vae import EncodeSettings, PointVae, chamfer, load_vae, save_vae
 from pipeline.manifest import write_json
 from pipeline.rendering.surface_colour import finish_of
-from schemas.assets import ASSETS, LATENTS
+from schemas import ASSETS, LATENTS
 
 Row = dict[str, Any]
 RELEASED = "weights/vae.safetensors"

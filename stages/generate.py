@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pipeline.entities.home import Home
 from pipeline.execution import Progress, Voice, single_thread
-from pipeline.execution.messages import listen
+from pipeline.execution.progress import listen
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.draw.drawing import svg
 from pipeline.floorplan.imports import describe_repairs, program_of, read_own
@@ -56,7 +56,7 @@ def main(
             progress.phase("writing the assets")
             assumed = assumptions(program) if source is None else []
             files = {**outcome.files, **drawings(outcome.home, program, repairs, assumed)}
-            add_part(dataset, 0, gather(0, [(outcome.rows, files)]))
+            add_part(dataset, 0, gather(0, outcome.rows, files))
             commit_shard(dataset, 0)
     progress.close()
     styles = {p.asset_id: str(factory.library.rows[p.asset_id]["style"]) for p in outcome.home.placements}

@@ -25,10 +25,7 @@ from pipeline.homes.rows import Row
 from pipeline.manifest import write_bytes, write_json
 from pipeline.metrics.articulation import sweeps_of
 from pipeline.relations import files
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 
 LIVED_IN = ("living_dining_room", "living_room", "bedroom", "dining_room", "kitchen", "kids_room", "study")
 

@@ -8,10 +8,7 @@ from pipeline.errors import UsageError
 from pipeline.sources.atiss.labels import KINDS
 from pipeline.sources.atiss.writer import rooms_with_objects, write_kind
 from pipeline.sources.reasons import Row
-from schemas.objects import OBJECTS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import OBJECTS, REJECTS, ROOMS, SCENES
 from schemas.table import Table
 
 

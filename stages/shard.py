@@ -24,8 +24,7 @@ def main(
     root: Path,
     *,
     count: int,
-    out: Path | None = None,
-    address: str | None = None,
+    out: str | Path | None = None,
     seed: int = 0,
     workers: int | None = None,
     prompts: Path | None = None,
@@ -36,15 +35,15 @@ def main(
     preview: int | None = None,
     voice: Voice = "plain",
 ) -> int:
-    """Fill the folder `out` (by default datasets/<seed>) with `count` homes; returns the exit code: 1 when some could not be made.
+    """Fill the folder `out` with `count` homes; returns the exit code: 1 when some could not be made.
 
-    What is committed goes to the `address` too (s3://...), where one is given. `memory` [MiB] is what a worker may take, `preview` [px] the
-    side of the top views, where it is not that of params.yaml; 0: none.
+    By default, and where `out` is an address (s3://...) to which goes what is committed, the folder is datasets/<seed>. `memory` [MiB] is
+    what a worker may take, `preview` [px] the side of the top views, where it is not that of params.yaml; 0: none.
     """
     progress = Progress(count, "homes", voice=voice)
-    place = Address(address) if address else None
+    address = Address(str(out)) if "://" in str(out) else None
     order = read_order(prompts, seed, progress, strict=strict)
-    folder = out or Path("datasets") / str(seed)
+    folder = Path("datasets") / str(seed) if address or not out else Path(out)
     progress.say("reading the layout model and the library")
     opened = partial(open_factory, root, seed, memory, preview)
     factory = opened()
@@ -53,13 +52,13 @@ def main(
     header = header_of(factory, count, order.digest())
     again = shlex.join(["sfgen", "shard", "--count", str(count), "--seed", str(seed), *(["--prompts", str(prompts)] if prompts else [])])
     recipe = Recipe(opened, cache_assets=scheduler is None, digests=factory.digests, versions=header.versions)
-    with open_or_create(folder, header, factory.asset_cache, address=place) as dataset:
+    with open_or_create(folder, header, factory.asset_cache, address=address) as dataset:
         where: dict[str, Any] = {"workers": workers or cores(), "scheduler": scheduler}
         if dataset.missing() and not scheduler:
             warm_up_workers(progress, root, opened, where["workers"])
         tally = fill(dataset, recipe, order.wish, **where, strict=strict, progress=progress, again=f"{again} --only {{index}}")
     progress.close()
-    return tell(tally, header, address or str(folder), progress, voice)
+    return tell(tally, header, str(out if address else folder), progress, voice)
 
 
 def repair(root: Path, *, folder: Path, prompts: Path | None = None, workers: int | None = None, voice: Voice = "plain") -> int:

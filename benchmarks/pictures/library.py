@@ -16,7 +16,7 @@ from pipeline import tables
 from pipeline.entities.files import load_asset
 from pipeline.preview.sheet import contact_sheet
 from pipeline.rendering.thumbnail import thumbnail
-from schemas.assets import ASSETS
+from schemas import ASSETS
 
 ROOT = Path(__file__).resolve().parents[2]
 SHEETS = {

@@ -2,7 +2,7 @@
 
 import json
 import math
-from dataclasses import asdict
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,10 @@ from pipeline.errors import ContentError
 from pipeline.manifest import canonical, sha256, write_bytes
 
 FORMAT = "sfgen-asset-1"
+PLAIN = ("asset_id", "category", "source", "source_id", "licence", "style", "super_category")
+RECORDS: dict[str, type[Any]] = {"joints": Joint, "materials": Material, "parts": PartBox}
+ARRAYS = frozenset({"axes", "axis", "centre", "com", "inertia", "origin", "size"})
+LIMITS = {"lower": -math.inf, "upper": math.inf}  # of a joint that has none, null in the file
 
 
 def save_asset(path: Path, asset: Asset) -> str:
@@ -29,10 +33,10 @@ def encode(asset: Asset) -> bytes:
     tensors: dict[str, np.ndarray[Any, Any]] = {}
     links = []
     for i, link in enumerate(asset.links):
-        entry: dict[str, Any] = {"name": link.name, "mass": link.mass, "com": link.com.tolist(), "inertia": link.inertia.tolist()}
-        for kind, meshes in (("visuals", link.visuals), ("colliders", link.colliders)):
+        entry = _entry(link)
+        for kind in ("visuals", "colliders"):
             entry[kind] = []
-            for j, mesh in enumerate(meshes):
+            for j, mesh in enumerate(getattr(link, kind)):
                 key = f"{i:03d}.{kind}.{j:04d}"
                 tensors[f"{key}.v"] = np.ascontiguousarray(mesh.vertices, np.float32)
                 tensors[f"{key}.f"] = np.ascontiguousarray(mesh.faces, np.int32)
@@ -42,24 +46,8 @@ def encode(asset: Asset) -> bytes:
         links.append(entry)
     for name, blob in sorted(asset.textures.items()):
         tensors[f"texture.{name}"] = np.frombuffer(blob, np.uint8)
-    header = {
-        "format": FORMAT,
-        **{k: getattr(asset, k) for k in ("asset_id", "category", "source", "source_id", "licence", "style", "super_category")},
-        "size": asset.size.tolist(),
-        "links": links,
-        "joints": [
-            {
-                **asdict(j),
-                "axis": j.axis.tolist(),
-                "origin": j.origin.tolist(),
-                "lower": _encode_limit(j.lower),
-                "upper": _encode_limit(j.upper),
-            }
-            for j in asset.joints
-        ],
-        "materials": [asdict(m) for m in asset.materials],
-        "parts": [{**asdict(p), "centre": p.centre.tolist(), "axes": p.axes.tolist(), "size": p.size.tolist()} for p in asset.parts],
-    }
+    header = {"format": FORMAT, **{k: getattr(asset, k) for k in PLAIN}, "size": asset.size.tolist(), "links": links}
+    header |= {kind: [_entry(record) for record in getattr(asset, kind)] for kind in RECORDS}
     # One metadata key only: safetensors keeps them in a hash map whose order changes from run to run.
     return save(tensors, {"asset": canonical(header).decode()})
 
@@ -73,58 +61,31 @@ def load_asset(path: Path) -> Asset:
                 raise ContentError(f"{path} is not an asset file ({FORMAT})", "delete it and run `dvc repro` again")
             tensors = {k: handle.get_tensor(k) for k in handle.keys()}  # noqa: SIM118 - not a dict
         return _decode(header, tensors)
-    except (OSError, SafetensorError, KeyError, ValueError) as error:
+    except (OSError, SafetensorError, KeyError, TypeError, ValueError) as error:
         msg = f"cannot read the asset file {path} ({str(error).splitlines()[0]})"
         raise ContentError(msg, "delete it and run `dvc repro` again") from error
 
 
 def _decode(header: dict[str, Any], tensors: dict[str, np.ndarray[Any, Any]]) -> Asset:
     def meshes(i: int, kind: str, entries: list[dict[str, Any]]) -> tuple[Mesh, ...]:
-        pieces = []
-        for j, entry in enumerate(entries):
-            key = f"{i:03d}.{kind}.{j:04d}"
-            pieces.append(
-                Mesh(entry["name"], tensors[f"{key}.v"], tensors[f"{key}.f"], entry["material"], tensors.get(f"{key}.t"), entry["part"])
-            )
-        return tuple(pieces)
+        keys = [f"{i:03d}.{kind}.{j:04d}" for j in range(len(entries))]
+        arrays = [(tensors[f"{key}.v"], tensors[f"{key}.f"], tensors.get(f"{key}.t")) for key in keys]
+        return tuple(Mesh(vertices=v, faces=f, uv=uv, **entry) for entry, (v, f, uv) in zip(entries, arrays, strict=True))
 
-    links = tuple(
-        Link(
-            e["name"],
-            meshes(i, "visuals", e["visuals"]),
-            meshes(i, "colliders", e["colliders"]),
-            e["mass"],
-            np.array(e["com"]),
-            np.array(e["inertia"]),
-        )
-        for i, e in enumerate(header["links"])
-    )
-    joints = tuple(
-        Joint(
-            **{
-                **j,
-                "axis": np.array(j["axis"]),
-                "origin": np.array(j["origin"]),
-                "lower": _decode_limit(j["lower"], -1),
-                "upper": _decode_limit(j["upper"], 1),
-                "after": tuple(j.get("after", ())),
-            }
-        )
-        for j in header["joints"]
-    )
-    materials = tuple(Material(**{**m, "base_color": tuple(m["base_color"])}) for m in header["materials"])
-    parts = tuple(
-        PartBox(**{**p, "centre": np.array(p["centre"]), "axes": np.array(p["axes"]), "size": np.array(p["size"])})
-        for p in header.get("parts", ())
-    )
+    links = [
+        _record(Link, {**e, **{kind: meshes(i, kind, e[kind]) for kind in ("visuals", "colliders")}}) for i, e in enumerate(header["links"])
+    ]
+    records: dict[str, Any] = {kind: tuple(_record(cls, entry) for entry in header.get(kind, ())) for kind, cls in RECORDS.items()}
     textures = {k.removeprefix("texture."): v.tobytes() for k, v in tensors.items() if k.startswith("texture.")}
-    plain = {k: header[k] for k in ("asset_id", "category", "source", "source_id", "licence", "style", "super_category")}
-    return Asset(size=np.array(header["size"]), links=links, joints=joints, materials=materials, textures=textures, parts=parts, **plain)
+    return Asset(size=np.array(header["size"]), links=tuple(links), textures=textures, **records, **{k: header[k] for k in PLAIN})
 
 
-def _encode_limit(value: float) -> float | None:
-    return None if math.isinf(value) else value
+def _entry(record: Link | Joint | Material | PartBox) -> dict[str, Any]:
+    """Return a record as JSON has it: arrays as lists, no limit as null."""
+    values = {f.name: getattr(record, f.name) for f in fields(record)}
+    return {k: v.tolist() if isinstance(v, np.ndarray) else None if v == LIMITS.get(k) else v for k, v in values.items()}
 
 
-def _decode_limit(value: float | None, sign: int) -> float:
-    return sign * math.inf if value is None else value
+def _record(cls: type[Any], entry: dict[str, Any]) -> Any:
+    known = {**entry, **{k: LIMITS[k] for k in LIMITS.keys() & entry.keys() if entry[k] is None}}
+    return cls(**{k: np.array(v) if k in ARRAYS else tuple(v) if isinstance(v, list) else v for k, v in known.items()})

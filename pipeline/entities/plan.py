@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 OpeningKind = Literal["door", "open", "portal", "window", "entrance"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Room:
     """A room. `polygon` (n, 2) [m]: inner wall faces, counter-clockwise, not closed, no collinear vertex.
 
@@ -65,9 +65,9 @@ class Opening:
         return float(np.linalg.norm(self.segment[1] - self.segment[0]))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """The rooms and openings of a home. `entrance` is the id of the room that one enters.
+    """The rooms and openings of a home. `entrance` is the id of the room that one enters. Plans and rooms are told apart by identity.
 
     `inner_wall` and `outer_wall` are thicknesses [m]; storey k's floor lies at k * `storey_height` [m].
     """

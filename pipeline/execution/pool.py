@@ -17,7 +17,7 @@ from typing import Any, NoReturn, TypeVar
 
 from pipeline.errors import ContentError
 from pipeline.execution.machine import single_thread
-from pipeline.execution.messages import Note, listen
+from pipeline.execution.progress import Note, listen
 from pipeline.execution.queue import STRIKES, Lost, Queue, Task
 
 J = TypeVar("J")

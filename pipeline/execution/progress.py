@@ -1,4 +1,7 @@
-"""How far a run is, on stderr: a bar on a terminal, a line now and then elsewhere, JSON lines for machines, or nothing."""
+"""How far a run is, on stderr: a bar on a terminal, a line now and then elsewhere, JSON lines for machines, or nothing.
+
+What a step tells while it works is passed to who called map_jobs, where the way is short; it is lost elsewhere (Dask).
+"""
 
 import json
 import sys
@@ -8,10 +11,24 @@ from typing import Any, Literal, TypeVar
 
 J = TypeVar("J")
 Voice = Literal["plain", "quiet", "json"]
+Note = tuple[Any, ...]
+
+_listeners: list[Callable[[Note], object]] = []
 
 QUIET = 30.0  # seconds between two lines where there is no terminal
 FIRST = 5.0  # seconds until the first of them; each comes twice as late as the one before, until they are QUIET apart
 LIVELY = 0.5  # seconds between two changes of what a terminal shows beside the bar
+
+
+def tell(*note: Any) -> None:
+    """Tell how far the step is, in values that can be sent to another process. It also shows that the worker is not stuck."""
+    for listener in _listeners:
+        listener(note)
+
+
+def listen(listener: Callable[[Note], object] | None) -> None:
+    """Let `listener` hear what is told in this process from now on; None: nobody."""
+    _listeners[:] = [] if listener is None else [listener]
 
 
 class Progress:

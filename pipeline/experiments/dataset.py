@@ -9,9 +9,7 @@ from pipeline import tables
 from pipeline.homes import reasons as homes
 from pipeline.homes.rows import Row
 from pipeline.sources import reasons as sources
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import REJECTS, ROOMS, SCENES
 from schemas.table import Table
 
 

@@ -21,10 +21,7 @@ from pipeline.report import baselines, calibration, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
 from pipeline.report.realism import realism_section
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 
 SHOWN = 24  # top views on the page
 

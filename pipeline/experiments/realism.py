@@ -21,9 +21,7 @@ from pipeline.metrics.views import STATES, Embed, Features, compare_views, featu
 from pipeline.relations.arrangement import Arrangement, from_rows
 from pipeline.relations.model import Relations
 from pipeline.relations.split import rooms_of
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
+from schemas import OBJECTS, OPENINGS, ROOMS
 
 Json = dict[str, Any]
 Rooms = list[Arrangement]

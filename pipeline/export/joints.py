@@ -8,8 +8,8 @@ from pxr import Sdf, Usd, UsdGeom, UsdPhysics
 from scipy.spatial.transform import Rotation
 
 from pipeline.errors import ContentError
-from pipeline.export.frames import inverse, world
-from pipeline.export.model import Floats, Joint
+from pipeline.export.model import Floats, Joint, inverse
+from pipeline.export.pieces import world
 
 AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 DEGREE = math.degrees(1.0)

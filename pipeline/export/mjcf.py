@@ -10,8 +10,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import numpy as np
 
 from pipeline.export.files import display, numbers, position, quaternion
-from pipeline.export.frames import inverse
-from pipeline.export.model import Body, Floats, Inertia, Joint, Material, Model, Placed, Scene
+from pipeline.export.model import Body, Floats, Inertia, Joint, Material, Model, Placed, Scene, inverse
 
 TIMESTEP = 0.002  # [s], MuJoCo's own default
 ONE = np.ones(3)

@@ -13,6 +13,11 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 
+def inverse(T: Floats) -> Floats:
+    """Return T_child_parent of T_parent_child."""
+    return np.asarray(np.linalg.inv(T), np.float64)
+
+
 @dataclass(frozen=True, slots=True)
 class Material:
     """How a surface looks; `color` is linear RGB, `texture` a picture that takes its place."""

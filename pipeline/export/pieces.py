@@ -12,8 +12,7 @@ from pxr import Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 from scipy.spatial import ConvexHull
 
 from pipeline.errors import ContentError
-from pipeline.export.frames import inverse, world
-from pipeline.export.model import Box, Floats, Hull, Material, Surface
+from pipeline.export.model import Box, Floats, Hull, Material, Surface, inverse
 
 GREY = Material("grey", (0.8, 0.8, 0.8), 0.5, 0.0, 1.0, None)
 FRICTION = 1.0  # of what is bound to no physics material, as MuJoCo has it
@@ -26,6 +25,11 @@ class Corners(NamedTuple):
     points: Floats
     normals: Floats
     uv: Floats | None
+
+
+def world(cache: UsdGeom.XformCache, prim: Usd.Prim) -> Floats:
+    """Return T_world_prim (4, 4), scale included."""
+    return np.array(cache.GetLocalToWorldTransform(prim), np.float64).T
 
 
 def read_pieces(

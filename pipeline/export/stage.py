@@ -10,24 +10,19 @@ import numpy as np
 from pxr import Pcp, Sdf, Usd, UsdGeom, UsdPhysics
 
 from pipeline.errors import ContentError
-from pipeline.export.frames import inverse, world
 from pipeline.export.joints import read_joints
-from pipeline.export.model import Body, Floats, Inertia, Model, Placed, Scene
-from pipeline.export.pieces import read_pieces
+from pipeline.export.model import Body, Floats, Inertia, Model, Placed, Scene, inverse
+from pipeline.export.pieces import read_pieces, world
 
 VARIANT = "MuJoCo"
 GROUPS = {"Rooms": "room", "Walls": "wall", "Windows": "window", "Doors": "door", "Objects": "object"}
 REMEDY = "run `sfgen verify` on the dataset; if it is whole, please report it"
 
 
-def overlay_of(stage: Path) -> Path:
-    """Return where the overlay for MuJoCo of a home's stage lies."""
-    return stage.with_name(f"{stage.stem}.mujoco.usda")
-
-
 def read_home(path: Path, scene_id: str, asset: Callable[[Path], Model]) -> Scene:
     """Read a home; `asset` reads (or remembers) the model in an asset's interface file."""
-    stage = Usd.Stage.Open(str(overlay if (overlay := overlay_of(path)).is_file() else path))
+    overlay = path.with_name(f"{path.stem}.mujoco.usda")
+    stage = Usd.Stage.Open(str(overlay if overlay.is_file() else path))
     cache = UsdGeom.XformCache()
     models: dict[str, Model] = {}
     placed = []

@@ -13,8 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from pipeline.errors import ContentError
 from pipeline.export.files import display, numbers, position, quaternion
-from pipeline.export.frames import inverse
-from pipeline.export.model import Body, Floats, Inertia, Joint, Model, Scene
+from pipeline.export.model import Body, Floats, Inertia, Joint, Model, Scene, inverse
 
 KINDS = {"hinge": "revolute", "slide": "prismatic", "fixed": "fixed"}
 ONE = np.ones(3)

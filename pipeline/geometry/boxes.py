@@ -4,9 +4,8 @@ Boxes turn about +Z only. Footprint corners are counter-clockwise from the objec
 """
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
-
-from pipeline.geometry.convex import clipped_areas
 
 Floats = NDArray[np.float64]
 
@@ -20,14 +19,11 @@ def footprints(position: Floats, yaw: Floats, size: Floats) -> Floats:
 
 
 def overlap_areas(a: Floats, b: Floats) -> Floats:
-    """Return the area (P,) [m2] shared by P pairs of convex polygons (P, V, 2), counter-clockwise."""
-    return clipped_areas(np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64))
-
-
-def volumes(size: Floats) -> Floats:
-    """Return the volume (N,) [m3]."""
-    volume: Floats = np.prod(size, axis=-1)
-    return volume
+    """Return the area (P,) [m2] shared by P pairs of polygons (P, V, 2)."""
+    areas = np.zeros(len(a))
+    near = np.flatnonzero(((a.min(axis=1) < b.max(axis=1)) & (b.min(axis=1) < a.max(axis=1))).all(axis=1))
+    areas[near] = shapely.area(shapely.intersection(shapely.polygons(a[near]), shapely.polygons(b[near])))
+    return areas
 
 
 def iou_3d(position_a: Floats, yaw_a: Floats, size_a: Floats, position_b: Floats, yaw_b: Floats, size_b: Floats) -> Floats:
@@ -36,7 +32,7 @@ def iou_3d(position_a: Floats, yaw_a: Floats, size_a: Floats, position_b: Floats
     top = np.minimum(position_a[:, 2] + size_a[:, 2], position_b[:, 2] + size_b[:, 2])
     height = np.maximum(top - np.maximum(position_a[:, 2], position_b[:, 2]), 0.0)
     inter = shared * height
-    union = volumes(size_a) + volumes(size_b) - inter
+    union = size_a.prod(axis=-1) + size_b.prod(axis=-1) - inter
     return np.where(union > 0, inter / np.maximum(union, 1e-12), 0.0)
 
 

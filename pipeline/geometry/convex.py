@@ -1,4 +1,4 @@
-"""Convex polygons in plan, compiled: separating axes, clipping, distance to a point.
+"""Convex polygons in plan, compiled: separating axes, distance to a point, hulls.
 
 A polygon is (V, 2) [m], counter-clockwise; repeated vertices are allowed (they pad batches of unequal polygons).
 """
@@ -33,62 +33,6 @@ def gap(a: Floats, b: Floats) -> float:
                 nearest = min(nearest, along)
             best = max(best, nearest)
     return best
-
-
-@compiled
-def gaps(a: Floats, b: Floats) -> Floats:
-    """Return `gap` of P pairs: (P, V, 2) and (P, W, 2) -> (P,)."""
-    distances = np.empty(a.shape[0])
-    for k in range(a.shape[0]):
-        distances[k] = gap(a[k], b[k])
-    return distances
-
-
-@compiled
-def clipped_area(a: Floats, b: Floats) -> float:
-    """Return the area [m2] of the intersection (Sutherland and Hodgman 1974: `a` is cut by each edge of `b`)."""
-    room = a.shape[0] + b.shape[0] + 2
-    now = np.empty((room, 2))
-    after = np.empty((room, 2))
-    count = a.shape[0]
-    now[:count] = a
-    for k in range(b.shape[0]):
-        x0, y0 = b[k, 0], b[k, 1]
-        dx = b[(k + 1) % b.shape[0], 0] - x0
-        dy = b[(k + 1) % b.shape[0], 1] - y0
-        if dx * dx + dy * dy < 1e-18:
-            continue
-        kept = 0
-        for i in range(count):
-            px, py = now[i, 0], now[i, 1]
-            qx, qy = now[(i + 1) % count, 0], now[(i + 1) % count, 1]
-            side_p = dx * (py - y0) - dy * (px - x0)
-            side_q = dx * (qy - y0) - dy * (qx - x0)
-            if side_p >= 0.0:
-                after[kept, 0], after[kept, 1] = px, py
-                kept += 1
-            if (side_p > 0.0 and side_q < 0.0) or (side_p < 0.0 and side_q > 0.0):
-                t = side_p / (side_p - side_q)
-                after[kept, 0], after[kept, 1] = px + t * (qx - px), py + t * (qy - py)
-                kept += 1
-        count = kept
-        now[:count] = after[:count]
-        if count == 0:
-            return 0.0
-    area = 0.0
-    for i in range(count):
-        j = (i + 1) % count
-        area += now[i, 0] * now[j, 1] - now[j, 0] * now[i, 1]
-    return max(0.0, 0.5 * area)
-
-
-@compiled
-def clipped_areas(a: Floats, b: Floats) -> Floats:
-    """Return `clipped_area` of P pairs: (P, V, 2) and (P, W, 2) -> (P,) [m2]."""
-    areas = np.empty(a.shape[0])
-    for k in range(a.shape[0]):
-        areas[k] = clipped_area(a[k], b[k])
-    return areas
 
 
 @borrowing

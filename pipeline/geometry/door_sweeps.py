@@ -1,11 +1,11 @@
 """What room doors sweep, as prisms."""
 
+import functools
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.geometry.memo import recent
 from pipeline.geometry.prisms import BULGE, MARGIN, STEPS, Prisms, Sweep, covering, join_prisms
 from pipeline.geometry.walls import LEAF_THICKNESS, Leaf
 
@@ -16,7 +16,7 @@ ROOM = 0.01  # [m] about the leaf and its levers: what stands in a room need not
 LEVER_EDGE, LEVER_LENGTH, LEVER_OUT, LEVER_Z = 0.03, 0.16, 0.065, (0.9, 1.15)
 
 
-@recent(512)
+@functools.lru_cache(512)
 def leaf_sweep(leaf: Leaf, elevation: float) -> Sweep:
     """Return the sweep of a door leaf and its levers, from closed to its full angle [world frame], and ROOM about it.
 

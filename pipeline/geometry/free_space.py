@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from pipeline.entities.plan import Opening, Room
 from pipeline.geometry.compiled import borrowing
-from pipeline.geometry.floor_raster import Mask, Raster, components, dilate, fill_all, standing
+from pipeline.geometry.floor_raster import Mask, Raster, dilate, fill_all, standing
 from pipeline.geometry.prisms import Prisms
 
 Floats = NDArray[np.float64]
@@ -96,10 +97,15 @@ def passage(opening: Opening, depth: float, widest: float = np.inf) -> Floats:
     return np.array([a - n, b - n, b + n, a + n])
 
 
+def standing_room(floor: Floor, free: Mask, radius: float) -> FreeSpace:
+    """Find where on the `free` cells of a floor a robot of that radius [m] can stand, and which of it hangs together."""
+    labels, _ = ndimage.label(standing(free, radius / floor.raster.cell))
+    return FreeSpace(floor, labels, radius / floor.raster.cell)
+
+
 def free_space(floor: Floor, obstacles: Prisms, radius: float, heights: tuple[float, float]) -> FreeSpace:
     """Take obstacles off the floor that reach into `heights` (low, high) [m, world]; find where the robot can stand."""
     free = floor.free.copy()
     hit = np.flatnonzero((obstacles.z[:, 0] < heights[1]) & (obstacles.z[:, 1] > heights[0]))
     fill_all(free, np.ascontiguousarray(obstacles.corners), obstacles.count, hit, floor.raster.origin, floor.raster.cell, False)
-    labels, _ = components(standing(free, radius / floor.raster.cell))
-    return FreeSpace(floor, labels, radius / floor.raster.cell)
+    return standing_room(floor, free, radius)

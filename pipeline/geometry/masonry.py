@@ -4,6 +4,7 @@ Rooms are shown one by one, but to an engine a storey has one floor, a ceiling p
 wall between them. A window is wall: it does not open, and nothing stands in it. Solids may overlap: nothing of them moves.
 """
 
+import functools
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
@@ -12,7 +13,6 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Plan
-from pipeline.geometry.memo import recent
 from pipeline.geometry.tiling import convex_cover, convex_pieces
 from pipeline.geometry.walls import SLAB, Cut, Prism, Shell
 
@@ -73,7 +73,7 @@ def _solid(quad: NDArray[np.float64], bottom: float, top: float, built: Shell) -
     return bool(wall.covers(around)) and not bool((shapely.area(shapely.intersection(holes, around)) > EVEN).any())
 
 
-@recent(16)
+@functools.lru_cache(16)
 def _wall_between(built: Shell, bottom: float, top: float) -> tuple[shapely.Geometry, NDArray[np.object_]]:
     """Return what is wall between two heights, a little wider, and the holes there."""
     quads = np.array([Polygon(cut.quad) for cut in built.cuts], np.object_)

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Joint
+from pipeline.entities.asset import Asset
 from pipeline.geometry.contact import first_hits, group_boxes
-from pipeline.geometry.kinematics import OPENERS, joint_motion, joint_range, link_points, moved_links
+from pipeline.geometry.kinematics import OPENERS, joint_motion, joint_range, link_points, moved_links, sweep_box
 from pipeline.geometry.prisms import Prisms, join_prisms, prism, sweep_of
 
 TOUCH = 0.005  # parts that are in each other by no more do not block each other [m]
@@ -40,7 +40,7 @@ def waiting(asset: Asset) -> list[tuple[int, ...]]:
     for k, joint in enumerate(joints):
         if joint.part_class in HELD:
             continue
-        way = _way(joint, points[k], rest[k])
+        way = sweep_box(asset, k)
         sweep: Prisms | None = None
         for i, other in enumerate(joints):
             related = i == k or other.child in moved[k] or joint.child in moved[i]
@@ -52,22 +52,6 @@ def waiting(asset: Asset) -> list[tuple[int, ...]]:
             if _meet(sweep, at_rest) and not _meet(own, at_rest) and not _meet(sweep, opened):
                 prerequisites[k].add(i)
     return [tuple(sorted(i for i in own if k not in prerequisites[i])) for k, own in enumerate(prerequisites)]
-
-
-def _way(joint: Joint, points: Floats, rest: Floats) -> Floats:
-    """Return a box (2, 3) that holds all that a joint moves, rough and quick."""
-    if not len(points):
-        return rest
-    lower, upper = joint_range(joint)
-    if joint.type == "prismatic":
-        ends = np.stack([rest + joint.axis * lower, rest + joint.axis * upper])
-    else:
-        away = points - joint.origin
-        along = away @ joint.axis
-        radius = np.linalg.norm(away - np.outer(along, joint.axis), axis=1).max() * np.sqrt(1.0 - np.minimum(joint.axis**2, 1.0))
-        middle = joint.origin + np.outer([along.min(), along.max()], joint.axis)
-        ends = np.stack([middle - radius, middle + radius])
-    return np.stack([ends.min((0, 1)), ends.max((0, 1))])
 
 
 def _links(asset: Asset, links: Sequence[int], T: Floats) -> Prisms:

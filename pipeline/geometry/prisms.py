@@ -163,12 +163,7 @@ def _spread(outline: Floats, margin: float) -> Floats:
 
 @cached_on_asset
 def solid(asset: Asset) -> Solid:
-    """Return an asset's prisms. They depend on the asset alone and are kept while the process lives."""
-    return make_solid(asset)
-
-
-def make_solid(asset: Asset) -> Solid:
-    """Compute the prisms of an asset at rest and in motion."""
+    """Return the prisms of an asset at rest and in motion."""
     pieces = [p for i, link in enumerate(asset.links) for points in _pieces(link) if (p := prism(points, i)) is not None]
     return Solid(join_prisms(pieces), tuple(sweep_of(asset, j, MARGIN) for j in range(len(asset.joints))))
 

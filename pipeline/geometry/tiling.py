@@ -44,11 +44,10 @@ def _rectangles(part: Polygon) -> list[NDArray[np.float64]]:
     xs, ys, free = _cells(part)
     rectangles: list[NDArray[np.float64]] = []
     while free.any():
-        i, j = map(int, np.argwhere(free)[0])
-        runs = [_grow(free, i, j, rows_first=True), _grow(free, i, j, rows_first=False)]
-        i1, j1 = max(runs, key=lambda e: (xs[e[0]] - xs[i]) * (ys[e[1]] - ys[j]))
+        blocks = _grow_blocks(free, *map(int, np.argwhere(free)[0]))
+        i, j, i1, j1 = block = max(blocks, key=lambda b: (xs[b[2]] - xs[b[0]]) * (ys[b[3]] - ys[b[1]]))
         free[i:i1, j:j1] = False
-        rectangles.append(_rectangle(xs, ys, (i, j, i1, j1)))
+        rectangles.append(_rectangle(xs, ys, block))
     return rectangles
 
 
@@ -102,20 +101,6 @@ def _ticks(values: NDArray[np.float64]) -> NDArray[np.float64]:
     ordered = np.sort(values)
     kept: NDArray[np.float64] = ordered[np.concatenate([[True], np.diff(ordered) > GRID])]
     return kept
-
-
-def _grow(free: NDArray[np.bool_], i: int, j: int, *, rows_first: bool) -> tuple[int, int]:
-    """Return the exclusive end (i1, j1) of a free block that starts at cell (i, j)."""
-    if not rows_first:
-        j1, i1 = _grow(free.T, j, i, rows_first=True)
-        return i1, j1
-    i1 = i + 1
-    while i1 < free.shape[0] and free[i1, j]:
-        i1 += 1
-    j1 = j + 1
-    while j1 < free.shape[1] and free[i:i1, j1].all():
-        j1 += 1
-    return i1, j1
 
 
 def _merged_triangles(part: Polygon) -> list[NDArray[np.float64]]:

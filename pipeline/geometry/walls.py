@@ -3,6 +3,7 @@
 Everything is in world plan coordinates (x, y) [m]; z is measured from the floor of the storey.
 """
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -13,7 +14,6 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, Polygon
 
 from pipeline.entities.plan import Opening, Plan, Room
-from pipeline.geometry.memo import recent
 from pipeline.geometry.stairs import Step, steps
 from pipeline.geometry.tiling import convex_pieces, polygons
 
@@ -52,7 +52,7 @@ class Panel:
     corners: NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Leaf:
     """A hinged door leaf, closed. It opens about the vertical axis through `hinge`, from `along` towards `normal`.
 
@@ -83,7 +83,7 @@ class Leaf:
         return np.array([near, far, far + back, near + back])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Shell:
     """The walls of one storey, up to the floor of the next. `height` is the ceiling of its highest room, `top` where its walls end.
 
@@ -105,13 +105,13 @@ def levels(plan: Plan) -> list[int]:
     return sorted({room.level for room in plan.rooms})
 
 
-@recent(256)
+@functools.lru_cache(256)
 def floor_pieces(room: Room) -> list[NDArray[np.float64]]:
     """Tile a room's floor with convex polygons (n, 2)."""
     return convex_pieces(Polygon(room.polygon))
 
 
-@recent(64)
+@functools.lru_cache(64)
 def shell(plan: Plan, level: int) -> Shell:
     """Build the wall solids of one storey: what lies between the rooms (staircases from below too) and the outer edge, less the openings."""
     rooms = [room for room in plan.rooms if level in plan.levels_of(room)]
@@ -134,7 +134,7 @@ def shell(plan: Plan, level: int) -> Shell:
     return Shell(height, top, outline, region, cuts, tuple(prisms), leaves, steps(plan, level))
 
 
-@recent(64)
+@functools.lru_cache(64)
 def leaves(plan: Plan) -> tuple[Leaf, ...]:
     """Return the door leaves of all storeys, in the order of the openings, without building walls."""
     doors = []

@@ -19,7 +19,7 @@ from pipeline.manifest import digest, write_json
 from pipeline.shards import code_digest
 from pipeline.shards.commits import read_file, record
 from pipeline.usd.library import write_asset
-from schemas.assets import ASSET_JOINTS, ASSETS
+from schemas import ASSET_JOINTS, ASSETS
 from schemas.table import Table
 
 MOST = 2 << 30  # bytes of all versions together
@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CODE = (  # what `write_asset` runs and reads of the checkout: no other change of it writes all assets again
     *(f"pipeline/{name}" for name in ("entities", "geometry", "rendering", "usd", "__init__.py")),
     *(f"pipeline/{name}.py" for name in ("card", "errors", "params", "style", "taxonomy", "yaml_text")),
-    *(f"manifests/{name}" for name in ("categories", "rooms.yaml", "styles.yaml")),
+    *(f"manifests/{name}" for name in ("categories", "materials.yaml", "rooms.yaml", "styles.yaml")),
 )
 
 

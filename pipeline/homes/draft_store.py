@@ -14,11 +14,7 @@ import pyarrow.parquet as pq
 from pipeline import tables
 from pipeline.manifest import replacing, write_json
 from pipeline.shards import scene_id
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import OBJECTS, OPENINGS, REJECTS, ROOMS, SCENES
 
 Row = dict[str, Any]
 DRAFT_TABLES = (SCENES, ROOMS, OPENINGS, OBJECTS, REJECTS)

@@ -32,7 +32,7 @@ from pipeline.retrieval.index import AssetIndex
 from pipeline.retrieval.settings import RetrievalSettings
 from pipeline.shards import code_digest
 from pipeline.verify import VerifySettings
-from schemas.assets import LATENTS
+from schemas import LATENTS
 
 OWN = Path(__file__).resolve().parents[2]  # the checkout that this code lies in
 

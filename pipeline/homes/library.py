@@ -14,7 +14,7 @@ from pipeline.entities.asset import Asset, Link
 from pipeline.entities.files import load_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import digest
-from schemas.assets import ASSET_JOINTS, ASSETS
+from schemas import ASSET_JOINTS, ASSETS
 
 MEMORY = 700  # of a process that makes homes [MiB]
 BESIDE = 690  # of that, what modules, models, tables and the homes in the making take at their peaks, measured [MiB]

@@ -17,7 +17,7 @@ from typing import Any
 
 from pipeline import tables
 from pipeline.errors import ContentError, SfgenError
-from pipeline.execution import Lost, Progress, map_jobs
+from pipeline.execution import Lost, Progress, map_divisible
 from pipeline.homes.factory import Factory, forget_factory
 from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.outcomes import Empty, Outcome
@@ -28,7 +28,7 @@ from pipeline.shards import (
     EMPTY,
     TABLES,
     Dataset,
-    ShardContent,
+    HomeContent,
     add_part,
     commit_shard,
     gather,
@@ -65,7 +65,7 @@ class Chunk:
 class Batch:
     """A chunk that is made: each home, those that could not be made, CPU seconds by part, and rooms and homes that were tried again."""
 
-    homes: tuple[ShardContent, ...]
+    homes: tuple[HomeContent, ...]
     empties: tuple[Empty, ...]
     seconds: Mapping[str, float]
     retries: int
@@ -154,12 +154,12 @@ def fill(
     spent = dict.fromkeys(missing, 0.0)  # CPU seconds by shard, and seconds of waiting for workers that kept silent
     while missing:
         found = chunks(dataset, missing, asked, factory.chunk, workers)
-        done = map_jobs(
+        done = map_divisible(
             partial(make_chunk, recipe),
             (replace(c, overdue=spent[c.shard] > allowed_seconds(dataset, factory.shard, c.shard)) for c in found),
+            Chunk.pieces,
             workers=min(workers, -(-todo // LEAST)),
             scheduler=scheduler,
-            split=Chunk.pieces,
             note=watch.heard,
             silence=factory.shard.home_seconds,
         )
@@ -177,9 +177,9 @@ def fill(
                 for home in batch.homes:
                     add_part(dataset, chunk.shard, home)
                 watch.counted(chunk, batch)
-                _finish(dataset, chunk.shard)
+                commit_shard(dataset, chunk.shard)
         for number in dataset.missing():  # whose last home is another command's, or whose maker was killed before the commit
-            _finish(dataset, number)
+            commit_shard(dataset, number)
         if (missing := dataset.missing()) and tally.homes + tally.unmade == before:
             progress.state("waiting for other commands")
             time.sleep(WAIT)
@@ -231,7 +231,7 @@ def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
         first = recipe.drafts(factory, chunk.requests) if recipe.drafts else None
         outcomes = attempt(factory, chunk.requests, first)
     brought = [(o.rows(factory.seed), {}) if isinstance(o, Empty) else (o.rows, o.files) for o in outcomes]
-    homes = tuple(gather(chunk.shard, [home]) for home in brought)
+    homes = tuple(gather(chunk.shard, rows, files) for rows, files in brought)
     if recipe.cache_assets:
         with factory.time("library"):
             factory.asset_cache.stock(row["asset_id"] for home in homes for row in home.rows["objects"])
@@ -261,7 +261,7 @@ def lost_batch(chunk: Chunk, answer: Lost, seed: int) -> Batch:
     (request,) = chunk.requests
     how = "died at it" if answer.how == "died" else "kept silent"
     empty = Empty(request.index, "worker_lost", ContentError(f"{answer.times} workers {how}", "give them more memory (fewer --workers)"))
-    return Batch((gather(chunk.shard, [(empty.rows(seed), {})]),), (empty,), {}, 0)
+    return Batch((gather(chunk.shard, empty.rows(seed), {}),), (empty,), {}, 0)
 
 
 def empties_of(dataset: Dataset) -> dict[str, list[tuple[str, str]]]:
@@ -280,12 +280,6 @@ def empties_of(dataset: Dataset) -> dict[str, list[tuple[str, str]]]:
             if row["what"] == EMPTY:
                 by_reason.setdefault(row["reason"], []).append((row["where"], row["detail"]))
     return by_reason
-
-
-def _finish(dataset: Dataset, number: int) -> None:
-    """Commit a shard once all of its homes are there, and no other command does."""
-    if not dataset.todo(number):
-        commit_shard(dataset, number)
 
 
 class _Watch:

@@ -47,8 +47,8 @@ def differing(folder: Path, header: Header, factory: Factory, asked: Callable[[i
         some = indices[start : start + factory.chunk]
         for index, outcome in zip(some, factory.make([asked(i) for i in some]), strict=True):
             number, name = index // header.shard_size, scene_id(header.seed, index)
-            home = (outcome.rows(header.seed), {}) if isinstance(outcome, Empty) else (outcome.rows, outcome.files)
-            content = gather(number, [home])
+            rows, files = (outcome.rows(header.seed), {}) if isinstance(outcome, Empty) else (outcome.rows, outcome.files)
+            content = gather(number, rows, files)
             parts = []
             for table, schema in TABLES.items():
                 there = [r for r in tables.read(folder / table_path(table, number), schema) if name in (r.get("scene_id"), r.get("where"))]

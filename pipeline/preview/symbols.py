@@ -10,7 +10,7 @@ from PIL import ImageDraw
 
 from pipeline.entities.asset import Asset, Joint
 from pipeline.entities.home import Placement
-from pipeline.geometry.kinematics import joint_motion
+from pipeline.geometry.kinematics import OPENERS, joint_motion
 from pipeline.geometry.memo import cached_on_asset
 from pipeline.geometry.tiling import polygons
 from pipeline.geometry.walls import Cut, Leaf, Shell
@@ -23,7 +23,6 @@ ARC = (120, 100, 84)
 OPENS = (226, 106, 22)
 GLASS = (245, 250, 253)
 ENTRANCE = (30, 120, 200)
-OPENERS = frozenset({"hinge_door", "slider_drawer", "hinge_lid", "slider_lid"})
 
 
 def draw_openings(draw: ImageDraw.ImageDraw, shell: Shell, project: Project, line: int) -> None:

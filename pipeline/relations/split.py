@@ -6,10 +6,7 @@ import pyarrow.compute as pc
 
 from pipeline import tables
 from pipeline.relations.arrangement import Arrangement, from_rows
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 
 COLUMNS = {
     ROOMS.name: ["scene_id", "room_id", "layout_type", "polygon"],

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import Asset
-from pipeline.geometry.kinematics import link_transforms
+from pipeline.geometry.kinematics import OPENERS, link_transforms
 from pipeline.rendering.boxes import triangles
 
 FREE_TURN = math.pi / 2  # how far a joint without limits turns when it is shown open [rad]
@@ -15,8 +15,7 @@ FREE_TURN = math.pi / 2  # how far a joint without limits turns when it is shown
 
 def open_joint_values(asset: Asset, fraction: float) -> dict[str, float]:
     """Return joint values with doors, drawers and lids at `fraction` of their range; knobs and buttons stay."""
-    openers = {"hinge_door", "slider_drawer", "hinge_lid", "slider_lid"}
-    return {j.name: fraction * (j.upper if math.isfinite(j.upper) else FREE_TURN) for j in asset.joints if j.part_class in openers}
+    return {j.name: fraction * (j.upper if math.isfinite(j.upper) else FREE_TURN) for j in asset.joints if j.part_class in OPENERS}
 
 
 def placement_transform(position: NDArray[np.float64], yaw: float, scale: NDArray[np.float64] | None = None) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
+from scipy import ndimage
 
 from pipeline.geometry.compiled import borrowing, compiled
 
@@ -54,9 +55,9 @@ class Frame:
     item: NDArray[np.int32]
 
 
-def top_down(low: NDArray[np.float64], high: NDArray[np.float64], width: int, height: int, margin: float = 0.0) -> View:
-    """Look straight down at the plan rectangle low..high (2,), +y up in the image; `margin` [m] is left around it."""
-    span = np.maximum(high - low + 2 * margin, 1e-3)
+def top_down(low: NDArray[np.float64], high: NDArray[np.float64], width: int, height: int) -> View:
+    """Look straight down at the plan rectangle low..high (2,), +y up in the image."""
+    span = np.maximum(high - low, 1e-3)
     axes = np.array([[1.0, 0, 0], [0, -1.0, 0], [0, 0, 1.0]])
     centre = np.array([*(low + high) / 2, 0.0])
     return View(axes, centre, float(min(width / span[0], height / span[1])), width, height)
@@ -130,7 +131,7 @@ def darken_edges(frame: Frame, radius: int, strength: float, reach: float = 0.6,
     filled = np.where(drawn, frame.depth, level).astype(np.float32)
     low = filled[::2, ::2]  # blurred at half the resolution: it is smooth, and four times cheaper
     for _ in range(2):  # two box passes come close to a Gaussian
-        low = _box_means(np.ascontiguousarray(_box_means(low, radius + 1).T), radius + 1).T
+        low = ndimage.uniform_filter(low, radius + 1, mode="nearest")
     everywhere = ground is not None
     return Frame(
         _darken_pixels(frame.colour, frame.depth, filled, low, np.float32(strength / reach), np.float32(strength), everywhere),
@@ -217,26 +218,6 @@ def fill_triangle(
                 colour[row, column, 0] = paint[0]
                 colour[row, column, 1] = paint[1]
                 colour[row, column, 2] = paint[2]
-
-
-@compiled
-def _box_means(values: NDArray[np.float32], width: int) -> NDArray[np.float32]:
-    """Return the means of `width` values around each (H, W) down the columns; those at the ends count beyond them."""
-    height, columns = values.shape
-    means = np.empty((height, columns), np.float32)
-    total = np.zeros(columns)
-    before = width // 2
-    for row in range(-before, width - before):
-        for column in range(columns):
-            total[column] += values[min(max(row, 0), height - 1), column]
-    for row in range(height):
-        if row > 0:
-            enters, leaves = min(row + width - before - 1, height - 1), max(row - before - 1, 0)
-            for column in range(columns):
-                total[column] += np.float64(values[enters, column]) - np.float64(values[leaves, column])
-        for column in range(columns):
-            means[row, column] = total[column] / width
-    return means
 
 
 @compiled

@@ -1,12 +1,12 @@
 """A dataset on disk: header, shards that are written whole or not at all, commits, checks, and what each home is asked to be."""
 
 from pipeline.shards.address import Address
-from pipeline.shards.content import ShardContent, gather
 from pipeline.shards.dataset import Dataset, add_part, commit_shard, forget_altered, is_committed, open_or_create
 from pipeline.shards.header import Header, code_digest, read_header
-from pipeline.shards.layout import EMPTY, TABLES, file_path, scene_id, shard_name
+from pipeline.shards.layout import EMPTY, TABLES, scene_id, shard_name
 from pipeline.shards.library import AssetSource
 from pipeline.shards.mix import Mix, read_entries, read_mix, require_prompt
+from pipeline.shards.parts import HomeContent, gather
 from pipeline.shards.seal import identity, vouches
 
 __all__ = [
@@ -16,12 +16,11 @@ __all__ = [
     "AssetSource",
     "Dataset",
     "Header",
+    "HomeContent",
     "Mix",
-    "ShardContent",
     "add_part",
     "code_digest",
     "commit_shard",
-    "file_path",
     "forget_altered",
     "gather",
     "identity",

@@ -21,7 +21,6 @@ from pipeline.manifest import text_of
 from pipeline.shards.address import Address
 from pipeline.shards.claims import Claims
 from pipeline.shards.commits import Commit, read_commit, record
-from pipeline.shards.content import ShardContent
 from pipeline.shards.disk import link, put, sync
 from pipeline.shards.header import Header, read_header
 from pipeline.shards.layout import (
@@ -38,7 +37,7 @@ from pipeline.shards.layout import (
     table_path,
 )
 from pipeline.shards.library import AssetSource, adopt, settle
-from pipeline.shards.parts import FILES, Part, join, part_place, parts_there, write_part
+from pipeline.shards.parts import FILES, HomeContent, Part, join, part_place, parts_there, write_part
 from pipeline.shards.seal import SEAL, is_sealed, seal, vouches
 from pipeline.tables import parquet
 
@@ -160,26 +159,21 @@ def _fails(folder: Path, name: str, reasons: frozenset[str]) -> bool:
     return any(row["what"] == "index" and row["reason"] in reasons for row in rows)
 
 
-def add_part(dataset: Dataset, number: int, content: ShardContent) -> int:
-    """Put a home of shard `number` aside until the shard is whole, and return its index; it survives the end of this process.
-
-    Raises ContentError for a table or file that has no place in the shard, and for a home that is not of it.
-    """
-    return write_part(dataset.folder, dataset.staging, number, content, dataset.header.indices(number))
+def add_part(dataset: Dataset, number: int, home: HomeContent) -> None:
+    """Put a home of shard `number` aside until the shard is whole; it survives the end of this process."""
+    assert home.index in dataset.header.indices(number)
+    write_part(dataset.folder, dataset.staging, number, home)
 
 
 def commit_shard(dataset: Dataset, number: int) -> bool:
     """Write shard `number` from its parts: stage, fsync, rename, commit file last. A committed shard is never rewritten.
 
-    False while another command does so, and where parts turn out to be torn: those are to be made again.
-    Raises ContentError when a home is missing that no rejects row accounts for.
+    False while homes are missing, while another command does so, and where parts turn out to be torn: those are to be made again.
     """
     name, left = shard_name(number), dataset.todo(number)
     if is_committed(dataset, number):  # asked after the parts were looked for: another command that commits removes them
         return True
-    if left:
-        raise ContentError(f"{name} lacks the homes {left}", "one scenes row per index, or a rejects row that says why there is none")
-    if not dataset.claims.take(f"{name}/commit"):
+    if left or not dataset.claims.take(f"{name}/commit"):
         return False
     try:
         if not _drop_torn(dataset, number):

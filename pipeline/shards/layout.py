@@ -11,15 +11,7 @@ commits/assets.json               the same for the library
 .staging/<token>/                 what a command is writing
 """
 
-from pathlib import PurePosixPath
-
-from pipeline.errors import ContentError
-from schemas.joints import JOINTS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import JOINTS, OBJECTS, OPENINGS, REJECTS, ROOMS, SCENES
 
 TABLES = {table.name: table for table in (SCENES, ROOMS, OPENINGS, OBJECTS, JOINTS, REJECTS)}
 HEADER = "dataset.json"
@@ -52,19 +44,6 @@ def table_path(table: str, number: int) -> str:
     return f"{table}/{shard_name(number)}.parquet"
 
 
-def file_path(family: str, number: int, name: str) -> str:
-    """Return where file `name` of a shard lies, relative to the dataset: `usd/shard-00000/s1_00000000.usdc`."""
-    return f"{family}/{shard_name(number)}/{name}"
-
-
 def commit_path(name: str) -> str:
     """Return where the commit file of a shard, or of the library (`assets`), lies."""
     return f"{COMMITS}/{name}.json"
-
-
-def require_inside(path: str, name: str) -> None:
-    """Raise ContentError unless `path` is relative and lies in a folder `<family>/<name>/` of the dataset."""
-    parts = PurePosixPath(path).parts
-    odd = path != str(PurePosixPath(path)) or "\\" in path or ".." in parts or path.startswith("/") or len(parts) < 3
-    if odd or parts[0] in {*TABLES, COMMITS, ASSETS} or parts[0].startswith(".") or parts[1] != name:
-        raise ContentError(f"a file of {name} may not lie at {path!r}", f"name it <family>/{name}/<file>")

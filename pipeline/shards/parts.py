@@ -7,19 +7,50 @@ commit file. It gets its name when all of that is there, and once it has it, it 
 import errno
 import os
 import shutil
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 
 from pipeline.errors import ContentError
-from pipeline.manifest import text_of, write_bytes
+from pipeline.manifest import sha256, text_of, write_bytes
 from pipeline.shards.commits import Commit, read_file, record
-from pipeline.shards.content import ShardContent
-from pipeline.shards.layout import EMPTY, PARTS, TABLES, index_of, require_inside, shard_name
+from pipeline.shards.layout import EMPTY, PARTS, TABLES, index_of, shard_name
 
 COMMIT = "part.json"
 ROWS, FILES = "rows.arrow", "files"
+
+Row = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class HomeContent:
+    """One home of a shard, in memory: rows by table name, and files by path relative to the dataset (`usd/shard-00000/...`)."""
+
+    rows: Mapping[str, Sequence[Row]]
+    files: Mapping[str, bytes]
+
+    @property
+    def index(self) -> int:
+        """Which home of the dataset it is: that of its scenes row, or of the rejects row that says why there is none."""
+        if self.rows["scenes"]:
+            return int(self.rows["scenes"][0]["index"])
+        return next(index_of(row["where"]) for row in self.rows["rejects"] if row["what"] == EMPTY)
+
+
+def gather(number: int, rows: Mapping[str, Sequence[Row]], files: Mapping[str, bytes]) -> HomeContent:
+    """Return a home as part of shard `number`, from its rows by table and its files, which are named `<family>/<file>`.
+
+    Files move into the shard's folder of their family, and the scenes row's `usd` and `usd_sha256` follow.
+    """
+    moved = {path: path.replace("/", f"/{shard_name(number)}/", 1) for path in files}
+    scenes = [
+        {**row, "usd": moved[row["usd"]], "usd_sha256": sha256(files[row["usd"]])} if row["usd"] else row for row in rows.get("scenes", ())
+    ]
+    tables = {table: rows.get(table, ()) for table in TABLES}
+    return HomeContent({**tables, "scenes": scenes}, {moved[path]: data for path, data in files.items()})
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,40 +92,25 @@ def parts_there(folder: Path, number: int) -> set[int]:
         return set()
 
 
-def write_part(folder: Path, staging: Path, number: int, content: ShardContent, wanted: range) -> int:
-    """Put one home of shard `number` aside and return its index; where it is there already, that stays.
-
-    Raises ContentError for a table or file that has no place in the shard, for more or less than one home, and for one that is not `wanted`.
-    """
-    name = shard_name(number)
-    unknown = sorted(content.rows.keys() - TABLES.keys())
-    if unknown:
-        raise ContentError(f"{name} brings unknown tables {', '.join(unknown)}", f"tables are {', '.join(TABLES)}")
-    for file in content.files:
-        require_inside(file, name)
-    tables = {table: schema.from_rows(content.rows.get(table, ())) for table, schema in TABLES.items()}
-    homes, empty = indices_of(tables["scenes"], tables["rejects"])
-    if len(homes + empty) != 1:
-        raise ContentError(
-            f"a part of {name} brings homes {[*homes, *empty]}", "one scenes row, or a rejects row that says why there is none"
-        )
-    (index,) = homes + empty
-    if index not in wanted:
-        raise ContentError(f"{name} brings home {index}, which is not one of its own", f"it has {wanted.start} to {wanted.stop - 1}")
-    place = staging / f"{index:08d}"
+def write_part(folder: Path, staging: Path, number: int, home: HomeContent) -> None:
+    """Put one home of shard `number` aside; where it is there already, that stays."""
+    target = part_place(folder, number, home.index)
+    place = staging / target.name
     shutil.rmtree(place, ignore_errors=True)
     place.mkdir(parents=True)
+    counts = {}
     with pa.OSFile(str(place / ROWS), "wb") as rows:
-        for data in tables.values():
+        for table, schema in TABLES.items():
+            data = schema.from_rows(home.rows[table])
+            counts[table] = data.num_rows
             with pa.ipc.new_stream(rows, data.schema) as writer:
                 writer.write_table(data)
-    for file, data in content.files.items():
+    for file, content in home.files.items():
         path = place / FILES / file
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data)
-    commit = record(place, f"{index:08d}", {t: data.num_rows for t, data in tables.items()}, flush=False)
+        path.write_bytes(content)
+    commit = record(place, target.name, counts, flush=False)
     write_bytes(place / COMMIT, text_of(commit.to_json()), flush=False)  # what a power cut tears is found by its digest, and made again
-    target = part_place(folder, number, index)
     target.parent.mkdir(parents=True, exist_ok=True)
     try:
         place.rename(target)
@@ -102,13 +118,6 @@ def write_part(folder: Path, staging: Path, number: int, content: ShardContent, 
         if not target.is_dir():
             raise
         shutil.rmtree(place)  # another was given up and came back: the same bytes
-    return index
-
-
-def indices_of(scenes: pa.Table, rejects: pa.Table) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Return the indices of the homes in a scenes table, and those that its rejects table says stay empty."""
-    empty = [index_of(row["where"]) for row in rejects.select(["what", "where"]).to_pylist() if row["what"] == EMPTY]
-    return tuple(scenes["index"].to_pylist()), tuple(empty)
 
 
 def join(parts: list[Part]) -> dict[str, pa.Table]:

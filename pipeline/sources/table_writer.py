@@ -9,12 +9,7 @@ from pipeline import tables
 from pipeline.errors import ContentError
 from pipeline.sources.house_rows import HouseRows, number_scenes
 from pipeline.sources.library_rows import LibraryRows
-from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import ASSET_JOINTS, ASSET_PARTS, ASSETS, OBJECTS, OPENINGS, REJECTS, ROOMS, SCENES
 
 
 class Summary:

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline import params
 from pipeline.entities.plan import Opening, Room
-from pipeline.geometry.floor_raster import components, standing
-from pipeline.geometry.free_space import FreeSpace, bare_floor
+from pipeline.geometry.free_space import bare_floor, standing_room
 from pipeline.geometry.robot import Robot
 
 Floats = NDArray[np.float64]
@@ -41,8 +40,6 @@ class Walker:
         in_the_way = [footprint for footprint, (bottom, top) in boxes if bottom < high and top > low]
         floor = bare_floor(rooms, openings, 0.2, self.cell)
         free = floor.raster.fill(floor.free.copy(), in_the_way, value=False)
-        radius = self.robot.radius / self.cell
-        labels, sizes = components(standing(free, radius))
-        space = FreeSpace(floor, labels, radius)
-        label = int(np.argmax(sizes[1:])) + 1 if len(sizes) > 1 else 0
-        return [round(float(share), 4) for share in space.shares(space.swept_floor(label), len(rooms))]
+        space = standing_room(floor, free, self.robot.radius)
+        swept = space.swept_floor(space.largest_label(space.labels > 0))
+        return [round(float(share), 4) for share in space.shares(swept, len(rooms))]

@@ -270,7 +270,8 @@ def test_generate_refuses_in_one_line(factory, tmp_path, capsys, prompt, code):
 def test_without_weights_make_run_is_named(monkeypatch, tmp_path, capsys, command):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "params.yaml").write_text("preset: a\npresets: {a: {}}\n")
-    monkeypatch.setattr(cli, "factory_root", lambda: tmp_path)
+    monkeypatch.setattr(cli, "ROOT", tmp_path)
+    monkeypatch.setattr(cli, "is_checkout", lambda: True)
     assert run(*command) == ContentError.exit_code
     assert "make run" in capsys.readouterr().err
 

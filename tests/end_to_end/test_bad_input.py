@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from pipeline import entry, tables
-from schemas.rejects import REJECTS
+from schemas import REJECTS
 from sfgen import cli
 
 
@@ -68,7 +68,8 @@ def command(capsys, monkeypatch, tmp_path):
     monkeypatch.delenv("SFGEN_DEBUG", raising=False)
 
     def run(root, *arguments):
-        monkeypatch.setattr(cli, "factory_root", lambda: root)
+        monkeypatch.setattr(cli, "ROOT", root)
+        monkeypatch.setattr(cli, "is_checkout", lambda: True)
         code = cli.run(arguments)
         return SimpleNamespace(returncode=code, stderr=capsys.readouterr().err)
 

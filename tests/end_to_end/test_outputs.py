@@ -12,12 +12,7 @@ from pipeline import tables, taxonomy
 from pipeline.entities.files import load_asset
 from pipeline.shards import TABLES
 from pipeline.usd.check import check_stage
-from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS, LATENTS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import ASSET_JOINTS, ASSET_PARTS, ASSETS, LATENTS, OBJECTS, OPENINGS, REJECTS, ROOMS, SCENES
 from sfgen.check import check
 
 HOMES = checkout.SMALL["dataset"]["homes"]

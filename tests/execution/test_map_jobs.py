@@ -15,7 +15,7 @@ from types import SimpleNamespace
 import pytest
 
 from pipeline.errors import ContentError, UsageError
-from pipeline.execution import Lost, Progress, cores, map_jobs, single_thread, track
+from pipeline.execution import Lost, Progress, cores, map_divisible, map_jobs, single_thread, track
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(Path(__file__).parent))  # where the workers find the steps
@@ -108,14 +108,14 @@ def test_a_job_that_kills_its_workers_is_named():
 
 def test_the_culprit_in_a_job_is_found_and_the_rest_is_done(tmp_path):
     step = functools.partial(work.die_of_seven, str(tmp_path))
-    results = dict(map_jobs(step, [(0, 1), (6, 7, 8), (9,)], workers=2, split=singles))
+    results = dict(map_divisible(step, [(0, 1), (6, 7, 8), (9,)], singles, workers=2))
     assert results.pop((7,)) == Lost("died", 3)
     assert results == {(0, 1): 1, (6,): 6, (8,): 8, (9,): 9}
     assert (tmp_path / "begun").read_text().count("7") == 3
 
 
 def test_a_silent_worker_is_replaced():
-    results = dict(map_jobs(work.hang_at_two, range(4), workers=2, split=lambda job: [job], silence=1.0))
+    results = dict(map_divisible(work.hang_at_two, range(4), lambda job: [job], workers=2, silence=1.0))
     assert results == {0: 0, 1: 1, 2: Lost("hung", 3), 3: 3}
 
 
@@ -128,7 +128,7 @@ def test_a_worker_that_whispers_is_not(monkeypatch):
         heard.append(note)
         now[0] += 200.0
 
-    assert dict(map_jobs(work.whisper, [5], workers=2, note=hear, silence=300.0)) == {5: 5}
+    assert dict(map_divisible(work.whisper, [5], None, workers=2, note=hear, silence=300.0)) == {5: 5}
     assert heard == [("part", 5, part) for part in range(4)]
 
 

@@ -24,10 +24,7 @@ from pipeline.metrics.views import features_once
 from pipeline.relations import learning
 from pipeline.report.page import render
 from pipeline.report.realism import VOID, realism_section
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 from tests.relations.making import bedrooms
 
 

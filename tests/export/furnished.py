@@ -50,5 +50,5 @@ def fill(folder):
     home, assets = made()
     rows = home_rows(home, verify_home(home, assets, SETTINGS), {}, assets, taxonomy.load(), 1, HEADER.licence)
     with open_or_create(folder, HEADER, Shelf(folder.parent / "shelf", assets)) as dataset:
-        add_part(dataset, 0, gather(0, [({**rows, "rejects": []}, files_of(home, assets, 0))]))
+        add_part(dataset, 0, gather(0, {**rows, "rejects": []}, files_of(home, assets, 0)))
         commit_shard(dataset, 0)

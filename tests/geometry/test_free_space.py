@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import shapely
 
-from pipeline.geometry.floor_raster import Raster, components, dilate, standing
-from pipeline.geometry.free_space import bare_floor, free_space
+from pipeline.geometry.floor_raster import Raster, dilate, standing
+from pipeline.geometry.free_space import Floor, bare_floor, free_space, standing_room
 from pipeline.geometry.prisms import join_prisms, prism
 from tests.geometry.furniture import two_rooms
 
@@ -36,13 +36,13 @@ def test_a_disc_stands_where_it_fits_and_covers_all_but_the_corners():
     assert not standing(free, 100).any()
 
 
-def test_components_are_ordered_by_size():
+def test_parts_hang_together_edge_to_edge():
     mask = np.zeros((9, 9), bool)
     mask[0:2, 0:2] = mask[4:8, 4:8] = True
     mask[2, 2] = True  # only diagonal: another part
-    labels, sizes = components(mask)
-    assert sorted(sizes[1:].tolist()) == [1, 4, 16]
-    assert labels.max() == 3
+    space = standing_room(Floor(Raster(np.zeros(2), 1.0, mask.shape), np.zeros(mask.shape, np.int16), mask), mask, 0.0)
+    assert np.bincount(space.labels.ravel()).tolist() == [81 - 21, 4, 1, 16]
+    assert space.largest_label(mask) == 3
 
 
 def test_a_door_joins_two_rooms_until_it_is_blocked():

@@ -5,7 +5,7 @@ import pytest
 
 from pipeline.entities.asset import Joint
 from pipeline.geometry import kinematics
-from pipeline.geometry.prisms import CORNERS, make_solid, prism
+from pipeline.geometry.prisms import CORNERS, prism, solid
 from tests.geometry.furniture import asset, box, chest, cupboard, link, table
 
 
@@ -63,7 +63,7 @@ def test_handles_and_where_they_set_off():
 
 
 def test_rest_prisms_of_boxes_are_exact():
-    made = make_solid(table())
+    made = solid(table())
     assert len(made.rest) == 5
     assert np.array_equal(np.unique(made.rest.count), [4])
     assert made.rest.z[0] == pytest.approx([0.71, 0.75], abs=1e-6)
@@ -83,7 +83,7 @@ def test_round_things_are_covered():
 
 @pytest.mark.parametrize("made", [chest(), cupboard()])
 def test_sweep_prisms_hold_the_moving_part_between_the_steps(made):
-    sweep = make_solid(made).sweeps[0]
+    sweep = solid(made).sweeps[0]
     points = np.concatenate([m.vertices for m in made.links[1].colliders]).astype(float)
     for q in np.linspace(0.001, made.joints[0].upper, 57):
         step = int(np.searchsorted(sweep.reached, q - 1e-12))

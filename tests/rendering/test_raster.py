@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pipeline.rendering import raster
-from pipeline.rendering.raster import _box_means, darken_edges, fill, oblique, render, shrink, top_down
+from pipeline.rendering.raster import darken_edges, fill, oblique, render, shrink, top_down
 
 
 def square(x0, y0, x1, y1, z):
@@ -108,11 +108,3 @@ def test_compiled_and_plain_draw_the_same(monkeypatch):
     slow = fill(projected, colours, None, (32, 32), (0, 0, 0))
     assert (fast.item == slow.item).all()
     assert (fast.colour == slow.colour).all()
-
-
-def test_box_means_are_those_of_all_values_around():
-    values = np.random.Generator(np.random.Philox(4)).uniform(0, 3, (9, 5)).astype(np.float32)
-    for width in (1, 2, 5):
-        padded = np.pad(values.astype(float), ((width, width), (0, 0)), mode="edge")
-        expected = [padded[width + row - width // 2 :][:width].mean(axis=0) for row in range(len(values))]
-        assert np.allclose(_box_means(values, width), expected, atol=1e-6)

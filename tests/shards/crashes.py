@@ -30,7 +30,7 @@ def record(scratch):
                 for number in (0, 1):
                     for index in HEADER.indices(number):
                         dataset.take(number, index)
-                        add_part(dataset, number, gather(number, [made.home(index)]))
+                        add_part(dataset, number, gather(number, *made.home(index)))
                     commit_shard(dataset, number)
                     recorder.mark(f"shard-0000{number}")
             recorder.mark("whole")

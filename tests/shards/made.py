@@ -9,7 +9,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from pipeline.shards import EMPTY, TABLES, Header, add_part, commit_shard, gather, is_committed, open_or_create, scene_id
-from schemas.assets import ASSETS
+from schemas import ASSETS
 
 HEADER = Header(seed=5, count=10, shard_size=4, licence="CC0-1.0", digests={"params": "p" * 64, "weights": "w" * 64})
 
@@ -77,10 +77,6 @@ def empty(index, seed=5, reason="refused"):
     return {"rejects": [{"what": EMPTY, "where": scene_id(seed, index), "reason": reason, "detail": "it cannot be"}]}, {}
 
 
-def shard(number, header=HEADER, without=()):
-    return gather(number, (empty(i, header.seed) if i in without else home(i, header.seed) for i in header.indices(number)))
-
-
 class AssetSource:
     """Two assets in a folder of their own."""
 
@@ -117,11 +113,8 @@ def fill(folder, header=HEADER, stop=None, numbers=None, without=(), source=None
                     if dataset.take(number, index):
                         while index == stop:
                             time.sleep(1)
-                        add_part(
-                            dataset, number, gather(number, [empty(index, header.seed) if index in without else home(index, header.seed)])
-                        )
-                if not dataset.todo(number):
-                    commit_shard(dataset, number)
+                        add_part(dataset, number, gather(number, *(empty if index in without else home)(index, header.seed)))
+                commit_shard(dataset, number)
     return missing
 
 

@@ -21,9 +21,7 @@ from pipeline.sources.threed_front.house import rows_of
 from pipeline.sources.threed_front.house_file import NO_TURN, ONE, Child, HouseFile, RoomRecord
 from pipeline.sources.threed_front.poses import Pose
 from pipeline.sources.threed_front.rows import ReadRoom
-from schemas.objects import OBJECTS
-from schemas.rejects import REJECTS
-from schemas.scenes import SCENES
+from schemas import OBJECTS, REJECTS, SCENES
 from stages import preprocess
 from tests.sources.reading import WALKER
 from tests.stages.test_preprocess import VERIFY

@@ -8,7 +8,7 @@ from pipeline.entities.files import load_asset, save_asset
 from pipeline.errors import ContentError
 from pipeline.latents.vae import load_vae
 from pipeline.rendering.surface_colour import finish_of
-from schemas.assets import ASSETS, LATENTS
+from schemas import ASSETS, LATENTS
 from stages import encode
 from tests.latents.test_surface import box_asset
 

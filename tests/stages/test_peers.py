@@ -9,10 +9,7 @@ from pipeline.sources import inventory
 from pipeline.sources.atiss.files import BOXES
 from pipeline.sources.atiss.source import Atiss
 from pipeline.sources.settings import PreprocessSettings
-from schemas.objects import OBJECTS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import OBJECTS, REJECTS, ROOMS, SCENES
 from stages import peers, preprocess
 from tests.stages.test_preprocess import checkout, write_params
 

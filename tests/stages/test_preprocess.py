@@ -12,12 +12,7 @@ from pipeline.errors import ContentError
 from pipeline.manifest import sha256_file
 from pipeline.relations import files
 from pipeline.sources.settings import PreprocessSettings
-from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rejects import REJECTS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import ASSET_JOINTS, ASSET_PARTS, ASSETS, OBJECTS, OPENINGS, REJECTS, ROOMS, SCENES
 from stages.preprocess import main
 from tests.sources import making
 

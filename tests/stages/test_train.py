@@ -11,11 +11,7 @@ from pipeline.diffusion.context import RoomContext
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.errors import ContentError
-from schemas.assets import ASSET_JOINTS, LATENTS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import ASSET_JOINTS, LATENTS, OBJECTS, OPENINGS, ROOMS, SCENES
 from schemas.table import Table
 from stages import train
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.verify import Policy, verify_home
-from schemas.joints import JOINTS
+from schemas import JOINTS
 from tests.geometry.furniture import LIBRARY, home, moved_placements, moved_plan, one_room, placed, two_rooms
 from tests.judging import SETTINGS
 
