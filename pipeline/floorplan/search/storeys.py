@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline.floorplan.program.daylight import YIELDS, daylit
 from pipeline.floorplan.program.defaults import DEFAULTS, OUTSIDE
 from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
-from pipeline.floorplan.search.energy import TERMS, WEIGHTS, Terms
+from pipeline.floorplan.search.energy import TERMS, Terms
 from pipeline.floorplan.search.grid import Halves
 from pipeline.floorplan.search.spec import Spec
 
@@ -74,7 +74,7 @@ def wall_for(kind: str, door: float, small: bool, beside: float) -> int:
 
 def weights_of(program: FloorProgram, factor: float = 1.0) -> Terms:
     """Return the weights: defaults times two to the power of the knobs, and a factor on all."""
-    return Terms(*(getattr(WEIGHTS, name) * 2.0 ** getattr(program.style, name) * factor for name in TERMS))
+    return Terms(*(getattr(Terms(), name) * 2.0 ** getattr(program.style, name) * factor for name in TERMS))
 
 
 def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, int] | None = None, ease: int = 0) -> Storey:
