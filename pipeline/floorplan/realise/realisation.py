@@ -142,12 +142,9 @@ def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room], lines: wa
             line = spans[0][2] + (half.outer if wall.a_low else -half.outer)
         if end - start < 0.5:
             continue
-        point, along, inward = np.zeros(2), np.zeros(2), np.zeros(2)
-        point[1 - axis], point[axis] = line, start
-        along[axis] = 1.0
-        inward[1 - axis] = -1.0 if wall.a_low else 1.0
-        thick = half.inner if len(spans) == 2 else half.outer
-        runs.append(Run(names, np.round(point, 3), along, inward, round(end - start, 3), request.level, wall.vertical, thick))
+        way, thick = -1.0 if wall.a_low else 1.0, half.inner if len(spans) == 2 else half.outer
+        line, length = float(np.round(line, 3)), round(end - start, 3)
+        runs.append(Run(names, wall.vertical, line, float(np.round(start, 3)), length, way, request.level, thick))
     return runs
 
 
