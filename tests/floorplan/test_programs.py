@@ -13,8 +13,7 @@ from pipeline.floorplan import complete, describe, json_schema, parse, prior, so
 from pipeline.floorplan.program.consistency import check, reach
 from pipeline.floorplan.program.defaults import DEFAULTS
 from pipeline.floorplan.program.floor_program import FloorProgram, Forbid, Furniture, Link, Range, Relation, RoomReq, RoomType, Things
-from pipeline.floorplan.program.plan_types import plan_types
-from pipeline.floorplan.program.priors import PriorSettings
+from pipeline.floorplan.program.priors import PriorSettings, plan_types
 
 
 def room(name, kind, **more):

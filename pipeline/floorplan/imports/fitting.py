@@ -28,12 +28,10 @@ CORNER = 0.10  # [m] of wall that a door gets beside it where the plan leaves it
 
 @dataclass(slots=True)
 class Fitted:
-    """An opening in its wall: from `low` to `high` [m] along the stretch."""
+    """An opening in its wall."""
 
     opening: Opening
     stretch: Stretch
-    low: float
-    high: float
 
 
 def fit(sketch: Sketch, rooms: Sequence[Room], walls: Sequence[Stretch]) -> list[Fitted]:
@@ -60,7 +58,7 @@ def put_door(name: str, pair: Iterable[str], walls: Sequence[Stretch], placed: S
         if low is not None and (stretch.gap >= TOUCH or len(wanted) == 1):
             kind = "entrance" if len(wanted) == 1 else "door"
             opening = Opening(name, kind, stretch.rooms, stretch.at(low, low + width), DOOR_HEIGHT, 0.0, None, stretch.level)  # type: ignore[arg-type]
-            return Fitted(opening, stretch, low, low + width)
+            return Fitted(opening, stretch)
     return None
 
 
@@ -100,7 +98,7 @@ def _fit(sketch: Sketch, wish: SketchOpening, rooms: dict[str, Room], walls: Seq
     if swing is not None and (swing.room_id not in stretch.rooms or kind not in {"door", "entrance"}):
         raise refuse(f"the leaf of {name} swings into {swing.room_id}, which it does not lead to")
     rooms_said = wish.rooms if len(wish.rooms) == len(stretch.rooms) else stretch.rooms
-    return Fitted(Opening(name, kind, rooms_said, segment, height, sill, swing, stretch.level), stretch, low, low + width)
+    return Fitted(Opening(name, kind, rooms_said, segment, height, sill, swing, stretch.level), stretch)
 
 
 def _may(wish: SketchOpening, stretch: Stretch, foreign: bool) -> bool:

@@ -12,16 +12,16 @@ from typing import Any
 
 from pipeline.entities.plan import Opening, Plan, Room, hops
 from pipeline.errors import ContentError, UsageError
+from pipeline.floorplan.imports.datasets import front_sketch, is_front, is_procthor, procthor_sketch
 from pipeline.floorplan.imports.fitting import Fitted, fit, hang, put_door
-from pipeline.floorplan.imports.front import front_sketch, is_front
 from pipeline.floorplan.imports.native import native_sketch
-from pipeline.floorplan.imports.procthor import is_procthor, procthor_sketch
 from pipeline.floorplan.imports.rings import apart, clean_rings, shrink, to_metres
 from pipeline.floorplan.imports.sketch import Repair, Sketch, refuse
 from pipeline.floorplan.imports.thresholds import cut_back, put_walls
 from pipeline.floorplan.imports.types import resolve_types
 from pipeline.floorplan.imports.walls import TOUCH, Stretch, stretches, touching_share
-from pipeline.floorplan.program.defaults import INTO
+from pipeline.floorplan.program.defaults import INTO, OUTSIDE
+from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Link, Range, RoomReq, Shell
 from pipeline.sources.guarded import Folder, parse_json
 from pipeline.sources.reasons import SourceError
 
@@ -184,7 +184,7 @@ def _open_where_touching(sketch: Sketch, walls: list[Stretch], fitted: list[Fitt
         if len(pair) == 2 and stretch.gap < TOUCH and pair not in said and stretch.length >= 0.6:
             said.add(pair)
             opening = Opening(_fresh("open", fitted), "open", stretch.rooms, stretch.at(0.0, stretch.length), 2.4, level=stretch.level)
-            fitted.append(Fitted(opening, stretch, 0.0, stretch.length))
+            fitted.append(Fitted(opening, stretch))
             sketch.repair("touching", opening.opening_id, f"{' and '.join(stretch.rooms)} touch: they are open to each other")
 
 
@@ -280,3 +280,35 @@ def _passages(fitted: list[Fitted]) -> list[tuple[str, ...]]:
 def _fresh(kind: str, fitted: list[Fitted]) -> str:
     taken = {f.opening.opening_id for f in fitted}
     return next(name for k in itertools.count() if (name := f"{kind}_{k}") not in taken)
+
+
+def program_of(plan: Plan) -> FloorProgram:
+    """Return the completed program that the plan answers to. Nothing in it was said in words."""
+    own = ("type", "role", "functions", "level")
+    rooms = [
+        RoomReq.model_validate({name: getattr(r, name) for name in own} | {"id": r.room_id, "area": _stated(r.area), "stated": False})
+        for r in plan.rooms
+    ]
+    pairs: dict[tuple[str, str], str] = {}
+    for o in plan.openings:
+        if o.kind in PASSAGES and len(o.rooms) == 2:
+            pairs.setdefault((min(o.rooms), max(o.rooms)), o.kind)
+    links = tuple(Link(a=a, b=b, kind=kind) for (a, b), kind in sorted(pairs.items()))  # type: ignore[arg-type]
+    inside = sum(r.area for r in plan.rooms if r.type not in OUTSIDE)
+    return FloorProgram(
+        storeys=1 + max(r.level for r in plan.rooms),
+        total_area=_stated(inside) if round(inside, 3) else Range(),
+        rooms=tuple(rooms),
+        links=links,
+        entrance=Entrance(into=plan.entrance),
+        shell=Shell(inner_wall=_wall(plan.inner_wall), outer_wall=_wall(plan.outer_wall), ceiling=max(r.height for r in plan.rooms)),
+        only=True,
+    )
+
+
+def _stated(area: float) -> Range:
+    return Range(target=round(area, 3), stated=True)
+
+
+def _wall(thickness: float) -> float:
+    return round(min(max(thickness, THINNEST), THICKEST), 4)
