@@ -30,7 +30,7 @@ class RoomType:
     `furnished_as` is the layout type, "": it stays empty; `functions` what it serves as where that may be several things; `unwanted` what it has not, though others furnished so have,
     and `usual` what it has oftener than they.
     `entered_from` are the types that it is entered from where nobody says, the usual one first, () for any hub; what `belongs` is entered from what it lies next to.
-    `floor` and `wall` are names of manifests/materials.yaml.
+    `floor` and `wall` are names of manifests/materials.yaml. `called`: what people and other datasets call it besides.
     """
 
     area: float
@@ -49,6 +49,7 @@ class RoomType:
     belongs: bool = False
     floor: str = "oak"
     wall: str = "plaster"
+    called: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,34 +89,36 @@ class Layout:
     walls: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class Rooms:
-    """manifests/rooms.yaml. `functions` are the layout types of what rooms may serve as; `company` says what is not in a room without something else; `empty` are 3D-FRONT's types that are read, but not furnished; `materials` 3D-FUTURE's, with densities [kg/m3]."""
+@dataclass(frozen=True)
+class Taxonomy:
+    """manifests/rooms.yaml, and the cards. `functions` are the layout types of what rooms may serve as; `company` says what is not in a room without something else; `empty` are 3D-FRONT's types that are read, but not furnished; `densities` [kg/m3] those of 3D-FUTURE's materials."""
 
     types: Mapping[str, RoomType]
     layouts: Mapping[str, Layout]
     functions: Mapping[str, str]
     company: tuple[Company, ...]
     empty: tuple[str, ...]
-    materials: Mapping[str, float | None]
-
-
-@dataclass(frozen=True, slots=True)
-class Taxonomy:
-    """Categories by name, types of rooms, layout types by `functions`, and `front_rooms`: the layout type of each of 3D-FRONT's, None for one that stays empty.
-
-    `styles` and `materials` map lower case to the spelling; `densities` [kg/m3] are those of materials.
-    """
-
-    categories: Mapping[str, Category]
-    types: Mapping[str, RoomType]
-    layouts: Mapping[str, Layout]
-    functions: Mapping[str, str]
-    company: tuple[Company, ...]
-    front_rooms: Mapping[str, str | None]
-    styles: Mapping[str, str]
-    materials: Mapping[str, str]
     densities: Mapping[str, float | None]
+
+    @functools.cached_property
+    def categories(self) -> Mapping[str, Category]:
+        """Categories by name."""
+        return cards()
+
+    @functools.cached_property
+    def front_rooms(self) -> Mapping[str, str | None]:
+        """The layout type of each of 3D-FRONT's types of rooms, None for one that stays empty."""
+        return {name: kind for kind, layout in self.layouts.items() for name in layout.front} | dict.fromkeys(self.empty)
+
+    @functools.cached_property
+    def styles(self) -> Mapping[str, str]:
+        """Names of styles by their lower case."""
+        return {name.lower(): name for name in style.load().styles}
+
+    @functools.cached_property
+    def materials(self) -> Mapping[str, str]:
+        """Names of materials by their lower case."""
+        return {name.lower(): name for name in self.densities}
 
     @property
     def layout_types(self) -> tuple[str, ...]:
@@ -163,17 +166,4 @@ def normalise(name: str) -> str:
 @functools.cache
 def load() -> Taxonomy:
     """Read the cards and manifests/rooms.yaml."""
-    rooms = params.build(Rooms, yaml_text.parse(PATH.read_text(encoding="utf-8")), "rooms", "manifests/rooms.yaml")
-    front: dict[str, str | None] = {name: kind for kind, layout in rooms.layouts.items() for name in layout.front}
-    styles, materials = ({n.lower(): n for n in names} for names in (style.load().styles, rooms.materials))
-    return Taxonomy(
-        cards(),
-        rooms.types,
-        rooms.layouts,
-        rooms.functions,
-        rooms.company,
-        {**front, **dict.fromkeys(rooms.empty)},
-        styles,
-        materials,
-        rooms.materials,
-    )
+    return params.build(Taxonomy, yaml_text.parse(PATH.read_text(encoding="utf-8")), "rooms", "manifests/rooms.yaml")

@@ -11,7 +11,7 @@ from pipeline.execution.progress import listen
 from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.draw.drawing import svg
 from pipeline.floorplan.imports import describe_repairs, program_of, read_own
-from pipeline.floorplan.program.assumptions import assumptions, notes
+from pipeline.floorplan.program.description import assumptions, notes
 from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.factory import open_factory
 from pipeline.homes.furniture_report import deliveries, report

@@ -14,9 +14,8 @@ from pipeline.floorplan.realise.realisation import build
 from pipeline.floorplan.search import anneal
 from pipeline.floorplan.search.energy import Terms, area, useful_area
 from pipeline.floorplan.search.grid import Labels
-from pipeline.floorplan.search.stairwell import rectangle
 from pipeline.floorplan.search.storeys import Storey, storey, stretch_storeys
-from pipeline.floorplan.search.trees import Effort, Outline, Trees
+from pipeline.floorplan.search.trees import Effort, Outline, Trees, rectangle
 
 TRIES = 24  # whole attempts before a program is refused
 LENGTHS = (1, 1, 2, 2, 4, 4, 4, 4, 8)  # how much longer attempts search

@@ -5,7 +5,7 @@ import pytest
 
 from pipeline.floorplan import complete, parse, prior
 from pipeline.floorplan.program.areas import usual_area
-from pipeline.floorplan.program.assumptions import assumptions
+from pipeline.floorplan.program.description import assumptions
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Footprint, Link, Range, RoomReq, Shell
 from stages.plan import main
 

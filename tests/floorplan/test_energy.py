@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from pipeline.floorplan.program.floor_program import FloorProgram, Style
-from pipeline.floorplan.realise import trace
+from pipeline.floorplan.realise import wall_lines
 from pipeline.floorplan.search import energy, grid
 from pipeline.floorplan.search.anneal import score
 from pipeline.floorplan.search.spec import Spec, tree
@@ -71,15 +71,15 @@ def test_measures_agree_with_the_plain_form_and_with_shapely():
                 assert out.walls[room].sum() == shape.length
                 hull = grid.hull_area(cells, room, out.box)
                 assert hull == pytest.approx(shape.convex_hull.area)
-                assert len(trace.outline(cells, room)) == out.corners[room].sum()
+                assert len(wall_lines.outline(cells, room)) == out.corners[room].sum()
 
 
 def test_inner_area_is_that_of_the_faces():
     out = measured(TWO, 2)
-    corners = trace.outline(TWO, 0)
+    corners = wall_lines.outline(TWO, 0)
     sides = [False, True, False, False]  # bottom, right, top, left: only the right side has a room behind
     assert corners == [(0, 0), (3, 0), (3, 3), (0, 3)]
-    faces = np.array(corners, float) * UNIT + trace.insets(corners, sides, HALF)
+    faces = np.array(corners, float) * UNIT + wall_lines.insets(corners, sides, HALF)
     assert faces.tolist() == pytest.approx(np.array([[0.12, 0.12], [0.69, 0.12], [0.69, 0.63], [0.12, 0.63]]))
     exact = shapely.Polygon(faces).area
     assert grid.inner_area(out, 0, 2, UNIT, HALF) == pytest.approx(exact, abs=0.003)

@@ -13,7 +13,7 @@ from pipeline.floorplan import complete, describe, json_schema, parse, prior, so
 from pipeline.floorplan.program.consistency import check, reach
 from pipeline.floorplan.program.defaults import DEFAULTS
 from pipeline.floorplan.program.floor_program import FloorProgram, Forbid, Furniture, Link, Range, Relation, RoomReq, RoomType, Things
-from pipeline.floorplan.program.priors import TYPES, PriorSettings
+from pipeline.floorplan.program.priors import PriorSettings, plan_types
 
 
 def room(name, kind, **more):
@@ -98,14 +98,14 @@ def test_the_prior_is_varied():
     assert prior(np.random.default_rng(5)) == prior(np.random.default_rng(5))
 
 
-@pytest.mark.parametrize("kind", TYPES)
+@pytest.mark.parametrize("kind", plan_types())
 def test_each_type_of_plan_keeps_to_itself(kind):
     settings = PriorSettings(types={kind: 1.0})
     for seed in range(12):
         made = prior(np.random.default_rng(seed), settings)
         check(made)
         assert complete(made) == made
-        assert TYPES[kind].least <= sum(r.type == "bedroom" for r in made.rooms) <= TYPES[kind].most
+        assert plan_types()[kind].least <= sum(r.type == "bedroom" for r in made.rooms) <= plan_types()[kind].most
         assert made.storeys == (2 if kind in {"terrace", "detached"} else 1)
 
 
@@ -116,7 +116,7 @@ def test_weights_decide_what_the_prior_draws():
         with pytest.raises(ContentError, match=r"prior\."):
             PriorSettings(**wrong)
     tree = params.read(Path(__file__).resolve().parents[2] / "params.yaml")
-    assert set(params.section(PriorSettings, tree, "prior").types) == set(TYPES)
+    assert set(params.section(PriorSettings, tree, "prior").types) == set(plan_types())
 
 
 def test_descriptions_are_understood_again():

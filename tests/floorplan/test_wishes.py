@@ -7,8 +7,8 @@ import shapely
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, solve
-from pipeline.floorplan.program.distance import distances, nearness
 from pipeline.floorplan.program.floor_program import FloorProgram, Footprint, Link, Relation, RoomReq
+from pipeline.floorplan.program.links import distances, nearness
 
 
 def room(name, kind, **more):

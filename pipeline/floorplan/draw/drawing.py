@@ -25,17 +25,17 @@ def svg(plan: Plan, scale: float = 60.0) -> str:
         '<rect width="100%" height="100%" fill="#ffffff"/>',
         '<g font-family="sans-serif" text-anchor="middle" stroke-linejoin="round">',
     ]
-    for mark in elements:
+    for mark, shift in elements:
         if isinstance(mark, Area):
-            path = " ".join(f"M {text(ring)} Z" for ring in mark.rings)
+            path = " ".join(f"M {text(ring + shift)} Z" for ring in mark.rings)
             edge = f' stroke="{mark.edge}" stroke-width="1"' if mark.edge else ""
             lines.append(f'<path d="{path}" fill="{mark.fill}" fill-rule="evenodd"{edge}/>')
         elif isinstance(mark, Line):
             lines.append(
-                f'<polyline points="{text(mark.points)}" fill="none" stroke="{mark.colour}" stroke-width="{mark.width * scale:.1f}"/>'
+                f'<polyline points="{text(mark.points + shift)}" fill="none" stroke="{mark.colour}" stroke-width="{mark.width * scale:.1f}"/>'
             )
         else:
-            x, y = mark.at[0] * scale, (height - mark.at[1]) * scale
+            x, y = (mark.at[0] + shift[0]) * scale, (height - (mark.at[1] + shift[1])) * scale
             turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if mark.turned else ""
             size = mark.size * scale
             lines.append(
@@ -54,21 +54,22 @@ def image(plan: Plan, scale: float = 60.0) -> Image.Image:
     def at(points: np.ndarray) -> list[tuple[float, float]]:
         return [(float(x) * fine, (height - float(y)) * fine) for x, y in points]
 
-    for mark in elements:
+    for mark, shift in elements:
         if isinstance(mark, Area):
-            pen.polygon(at(mark.rings[0]), fill=mark.fill, outline=mark.edge or None, width=FINER)
+            pen.polygon(at(mark.rings[0] + shift), fill=mark.fill, outline=mark.edge or None, width=FINER)
             for ring in mark.rings[1:]:
-                pen.polygon(at(ring), fill="white")
+                pen.polygon(at(ring + shift), fill="white")
         elif isinstance(mark, Line):
-            pen.line(at(mark.points), fill=mark.colour, width=max(1, round(mark.width * fine)), joint="curve")
+            pen.line(at(mark.points + shift), fill=mark.colour, width=max(1, round(mark.width * fine)), joint="curve")
         else:
-            _write(picture, pen, mark, fine, height)
+            ((x, y),) = at(mark.at + shift[None])
+            _write(picture, pen, mark, fine, x, y)
     return picture.resize((picture.width // FINER, picture.height // FINER), Image.Resampling.LANCZOS)
 
 
-def _write(picture: Image.Image, pen: ImageDraw.ImageDraw, mark: Words, scale: float, height: float) -> None:
+def _write(picture: Image.Image, pen: ImageDraw.ImageDraw, mark: Words, scale: float, x: float, y: float) -> None:
+    """Write words with their middle at (x, y) [pixels]."""
     font = ImageFont.load_default(size=mark.size * scale)
-    x, y = mark.at[0] * scale, (height - mark.at[1]) * scale
     if not mark.turned:
         plain = mark.text.removesuffix("²")  # Pillow's own font, the same on every machine, has no such sign
         small = ImageFont.load_default(size=0.62 * mark.size * scale)

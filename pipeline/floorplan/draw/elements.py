@@ -75,23 +75,13 @@ def bounds(plan: Plan) -> tuple[float, float, float, float]:
     return float(x0), float(y0), float(x1), float(y1)
 
 
-def marks(plan: Plan) -> tuple[list[Mark], float, float]:
-    """Return the marks, what lies below first, and width and height of the sheet [m]; its lower left corner is the origin."""
+def marks(plan: Plan) -> tuple[list[tuple[Mark, Points]], float, float]:
+    """Return the marks, what lies below first, each with its shift on the sheet, and the sheet's width and height [m]; its lower left corner is the origin."""
     x0, y0, x1, y1 = bounds(plan)
     step = x1 - x0 + GAP
-    elements: list[Mark] = []
-    for level in storeys(plan):
-        shift = np.array([MARGIN - x0 + level * step, MARGIN - y0])
-        elements.extend(_translate(mark, shift) for mark in _storey(plan, level))
-    return elements, len(storeys(plan)) * step - GAP + 2 * MARGIN, y1 - y0 + 2 * MARGIN
-
-
-def _translate(mark: Mark, shift: Points) -> Mark:
-    if isinstance(mark, Area):
-        return Area(tuple(r + shift for r in mark.rings), mark.fill, mark.edge)
-    if isinstance(mark, Line):
-        return Line(mark.points + shift, mark.colour, mark.width)
-    return Words(mark.text, (mark.at[0] + float(shift[0]), mark.at[1] + float(shift[1])), mark.size, mark.colour, mark.turned)
+    shifts = [np.array([MARGIN - x0 + level * step, MARGIN - y0]) for level in storeys(plan)]
+    elements = [(mark, shift) for level, shift in enumerate(shifts) for mark in _storey(plan, level)]
+    return elements, len(shifts) * step - GAP + 2 * MARGIN, y1 - y0 + 2 * MARGIN
 
 
 def _storey(plan: Plan, level: int) -> Iterator[Mark]:

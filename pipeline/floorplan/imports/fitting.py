@@ -1,5 +1,6 @@
 """Openings of a sketch put into its walls: each on a stretch that is long enough, none upon another, leaves that can swing."""
 
+import dataclasses
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -27,12 +28,10 @@ CORNER = 0.10  # [m] of wall that a door gets beside it where the plan leaves it
 
 @dataclass(slots=True)
 class Fitted:
-    """An opening in its wall: from `low` to `high` [m] along the stretch."""
+    """An opening in its wall."""
 
     opening: Opening
     stretch: Stretch
-    low: float
-    high: float
 
 
 def fit(sketch: Sketch, rooms: Sequence[Room], walls: Sequence[Stretch]) -> list[Fitted]:
@@ -59,7 +58,7 @@ def put_door(name: str, pair: Iterable[str], walls: Sequence[Stretch], placed: S
         if low is not None and (stretch.gap >= TOUCH or len(wanted) == 1):
             kind = "entrance" if len(wanted) == 1 else "door"
             opening = Opening(name, kind, stretch.rooms, stretch.at(low, low + width), DOOR_HEIGHT, 0.0, None, stretch.level)  # type: ignore[arg-type]
-            return Fitted(opening, stretch, low, low + width)
+            return Fitted(opening, stretch)
     return None
 
 
@@ -70,7 +69,7 @@ def _fit(sketch: Sketch, wish: SketchOpening, rooms: dict[str, Room], walls: Seq
         width = {"window": 1.2, "entrance": 0.9, "portal": 1.2}.get(wish.kind, DOOR)
     if width < NARROWEST[wish.kind]:
         raise refuse(f"{name} is {width:.2f} m wide; a {wish.kind} has {NARROWEST[wish.kind]:g} m or more")
-    mine = [s for s in walls if _may(wish, s) or (sketch.foreign and _may_as_well(wish, s))]
+    mine = [s for s in walls if s.level == wish.level and _may(wish, s, sketch.foreign)]
     if not mine and wish.rooms:
         between = " and ".join(wish.rooms)
         raise refuse(
@@ -99,23 +98,17 @@ def _fit(sketch: Sketch, wish: SketchOpening, rooms: dict[str, Room], walls: Seq
     if swing is not None and (swing.room_id not in stretch.rooms or kind not in {"door", "entrance"}):
         raise refuse(f"the leaf of {name} swings into {swing.room_id}, which it does not lead to")
     rooms_said = wish.rooms if len(wish.rooms) == len(stretch.rooms) else stretch.rooms
-    return Fitted(Opening(name, kind, rooms_said, segment, height, sill, swing, stretch.level), stretch, low, low + width)
+    return Fitted(Opening(name, kind, rooms_said, segment, height, sill, swing, stretch.level), stretch)
 
 
-def _may(wish: SketchOpening, stretch: Stretch) -> bool:
-    """Whether an opening may stand in a stretch: on its storey, between its rooms; an entrance leads outside."""
-    if stretch.level != wish.level:
-        return False
-    if len(wish.rooms) == 2:
-        return set(stretch.rooms) == set(wish.rooms)
-    if len(wish.rooms) == 1:
-        return stretch.rooms == wish.rooms
-    return wish.kind not in {"open", "portal"} or len(stretch.rooms) == 2
+def _may(wish: SketchOpening, stretch: Stretch, foreign: bool) -> bool:
+    """Whether an opening may stand in a stretch of its storey: between its rooms; an entrance leads outside.
 
-
-def _may_as_well(wish: SketchOpening, stretch: Stretch) -> bool:
-    """Whether an opening of a dataset's house, of which one room is known, may stand in a stretch: another room may lie behind a thick wall."""
-    return stretch.level == wish.level and len(wish.rooms) == 1 and wish.rooms[0] in stretch.rooms
+    In a dataset's house, where one of its rooms is known, another may lie behind a thick wall.
+    """
+    if not wish.rooms:
+        return wish.kind not in {"open", "portal"} or len(stretch.rooms) == 2
+    return set(stretch.rooms) == set(wish.rooms) or (foreign and len(wish.rooms) == 1 and wish.rooms[0] in stretch.rooms)
 
 
 def _beside(
@@ -244,12 +237,12 @@ def hang(sketch: Sketch, fitted: list[Fitted], rooms: Sequence[Room], depth: dic
             sweep = sweep_of(o.segment, swing, floors[swing.room_id])
             if _clear(sweep, swing.room_id, o, floors, swept, fitted, thickness):
                 swept.append(((swing.room_id, o.level), sweep))
-                done[o.opening_id] = _with(o, swing)
+                done[o.opening_id] = dataclasses.replace(o, swing=swing)
                 if stated is not None and swing != stated:
                     sketch.repair("swing", o.opening_id, f"its leaf cannot turn as stated and swings into {swing.room_id}")
                 break
         else:
-            done[o.opening_id] = _with(o, None)
+            done[o.opening_id] = dataclasses.replace(o, swing=None)
             sketch.repair("no_leaf", o.opening_id, "a leaf finds no room to swing; the door has none")
     return [done.get(f.opening.opening_id, f.opening) for f in fitted]
 
@@ -293,8 +286,3 @@ def _clear(
     others = (f.opening for f in fitted if f.opening.opening_id != own.opening_id and f.opening.kind != "window")
     lines = [shapely.LineString(o.segment) for o in others if room in o.rooms and o.level == own.level]
     return all(line.distance(sweep.intersection(floors[room])) >= LEAF_GAP for line in lines)
-
-
-def _with(opening: Opening, swing: Swing | None) -> Opening:
-    o = opening
-    return Opening(o.opening_id, o.kind, o.rooms, o.segment, o.height, o.sill, swing, o.level)

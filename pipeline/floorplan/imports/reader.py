@@ -12,15 +12,16 @@ from typing import Any
 
 from pipeline.entities.plan import Opening, Plan, Room, hops
 from pipeline.errors import ContentError, UsageError
+from pipeline.floorplan.imports.datasets import front_sketch, is_front, is_procthor, procthor_sketch
 from pipeline.floorplan.imports.fitting import Fitted, fit, hang, put_door
-from pipeline.floorplan.imports.front import front_sketch, is_front
 from pipeline.floorplan.imports.native import native_sketch
-from pipeline.floorplan.imports.procthor import is_procthor, procthor_sketch
 from pipeline.floorplan.imports.rings import apart, clean_rings, shrink, to_metres
 from pipeline.floorplan.imports.sketch import Repair, Sketch, refuse
 from pipeline.floorplan.imports.thresholds import cut_back, put_walls
 from pipeline.floorplan.imports.types import resolve_types
 from pipeline.floorplan.imports.walls import TOUCH, Stretch, stretches, touching_share
+from pipeline.floorplan.program.defaults import INTO, OUTSIDE
+from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Link, Range, RoomReq, Shell
 from pipeline.sources.guarded import Folder, parse_json
 from pipeline.sources.reasons import SourceError
 
@@ -28,16 +29,6 @@ MAX_BYTES = 64 << 20
 INNER, OUTER, STOREY = 0.12, 0.24, 3.0  # [m] where the file does not say
 THINNEST, THICKEST = 0.05, 0.6  # [m] of walls
 PASSAGES = frozenset({"door", "open", "portal"})
-INTO = (
-    "entry",
-    "hallway",
-    "living_room",
-    "studio_room",
-    "family_room",
-    "kitchen",
-    "dining_room",
-    "office",
-)  # rooms that one enters, best first
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +118,7 @@ def _build_plan(sketch: Sketch) -> Plan:
     if sketch.foreign and sketch.faces == "inner":
         put_walls(sketch, inner)
     _to_inner_faces(sketch, inner)
-    rooms = [Room(r.room_id, r.type, r.ring, r.level, round(r.height, 3), r.role, functions=r.functions) for r in sketch.rooms]
+    rooms = [r.room() for r in sketch.rooms]
     levels = sorted({r.level for r in rooms})
     if levels != list(range(len(levels))):
         raise refuse(f"its storeys are {', '.join(map(str, levels))}; they count from 0 without gaps")
@@ -147,7 +138,7 @@ def _build_plan(sketch: Sketch) -> Plan:
     _join(sketch, rooms, walls, fitted, entrance)
     gaps = [f.stretch.gap for f in fitted if len(f.stretch.rooms) == 2 and f.opening.kind != "window" and f.stretch.gap >= TOUCH]
     inner = round(float(max(gaps, default=inner)), 4)
-    openings = hang(sketch, fitted, rooms, _depths(fitted, entrance), max(inner, outer))
+    openings = hang(sketch, fitted, rooms, hops(_passages(fitted), entrance), max(inner, outer))
     high = max(r.height for r in rooms)
     storeys = sketch.storey_height or max(STOREY, high + 0.3)
     if storeys < high + 0.05:
@@ -173,17 +164,15 @@ def _thickness(sketch: Sketch, name: str, usual: float) -> float:
 def _to_inner_faces(sketch: Sketch, inner: float) -> None:
     """Move walls into the rooms where polygons are centre lines: stated, or seen by rooms that touch and none with a wall between."""
     faces = sketch.faces
+    text = f"corners lie on walls' centre lines; walls are {inner:g} m thick"
     if not faces:
-        rooms = [Room(r.room_id, r.type, r.ring, r.level) for r in sketch.rooms]
-        thin, thick = (
-            sum(pair) for pair in zip(*(touching_share(storey(rooms, k), k) for k in sorted({r.level for r in rooms})), strict=True)
-        )
+        rooms = [r.room() for r in sketch.rooms]
+        shares = (touching_share(storey(rooms, k), k) for k in sorted({r.level for r in rooms}))
+        thin, thick = map(sum, zip(*shares, strict=True))
         faces = "centre" if thin and not thick else "inner"
-        if faces == "centre":
-            sketch.repair("centre_lines", "plan", f"its rooms touch: corners are taken as walls' centre lines, walls are {inner:g} m thick")
-    elif faces == "centre":
-        sketch.repair("centre_lines", "plan", f"corners lie on walls' centre lines; walls are {inner:g} m thick")
+        text = f"its rooms touch: corners are taken as walls' centre lines, walls are {inner:g} m thick"
     if faces == "centre":
+        sketch.repair("centre_lines", "plan", text)
         shrink(sketch, inner / 2)
 
 
@@ -195,7 +184,7 @@ def _open_where_touching(sketch: Sketch, walls: list[Stretch], fitted: list[Fitt
         if len(pair) == 2 and stretch.gap < TOUCH and pair not in said and stretch.length >= 0.6:
             said.add(pair)
             opening = Opening(_fresh("open", fitted), "open", stretch.rooms, stretch.at(0.0, stretch.length), 2.4, level=stretch.level)
-            fitted.append(Fitted(opening, stretch, 0.0, stretch.length))
+            fitted.append(Fitted(opening, stretch))
             sketch.repair("touching", opening.opening_id, f"{' and '.join(stretch.rooms)} touch: they are open to each other")
 
 
@@ -210,7 +199,11 @@ def _entrance(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: l
     if mine:
         order = {kind: k for k, kind in enumerate(INTO)}
         best = min(mine, key=lambda f: (f not in marked, order.get(ground[f.opening.rooms[0]].type, 99)))
-        _only_entrance(sketch, best, marked)
+        for item in marked:
+            if item is not best:
+                item.opening = dataclasses.replace(item.opening, kind="door")
+                sketch.repair("entrance", item.opening.opening_id, f"{best.opening.opening_id} is the entrance: this is a door")
+        best.opening = dataclasses.replace(best.opening, kind="entrance")
         return best.opening.rooms[0]
     wanted = [sketch.entrance] if sketch.entrance else [r.room_id for kind in INTO for r in ground.values() if r.type == kind]
     if sketch.foreign or not wanted:
@@ -227,57 +220,38 @@ def _entrance(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: l
 def _keep_main_part(sketch: Sketch, rooms: list[Room], walls: Iterable[Stretch], fitted: list[Fitted]) -> None:
     """Leave rooms out that stand apart from the largest part which hangs together by openings, or by walls that may get doors."""
     area = {r.room_id: r.area for r in rooms}
-    pairs = [set(s.rooms) for s in walls if len(s.rooms) == 2] + [set(f.opening.rooms) for f in fitted if f.opening.kind in PASSAGES]
-    parts: list[set[str]] = [{room} for room in area]
-    for pair in pairs:
-        joined = [part for part in parts if part & pair]
-        parts = [part for part in parts if not part & pair] + ([set().union(*joined)] if joined else [])
-    main = max(parts, key=lambda part: (round(sum(area[room] for room in part), 3), min(part)))
+    pairs = [s.rooms for s in walls if len(s.rooms) == 2] + _passages(fitted)
+    main = max((set(hops(pairs, room)) for room in area), key=lambda part: (round(sum(area[room] for room in part), 3), min(part)))
     _leave_out(sketch, rooms, fitted, [room for room in area if room not in main], "it stands apart")
     if sketch.entrance not in main:
         sketch.entrance = ""
 
 
-def _only_entrance(sketch: Sketch, chosen: Fitted, marked: list[Fitted]) -> None:
-    """Of several outside doors one is the entrance, the others are doors."""
-    for item in marked:
-        if item is not chosen:
-            item.opening = dataclasses.replace(item.opening, kind="door")
-            sketch.repair("entrance", item.opening.opening_id, f"{chosen.opening.opening_id} is the entrance: this is a door")
-    if chosen.opening.kind != "entrance":
-        chosen.opening = dataclasses.replace(chosen.opening, kind="entrance")
-
-
 def _join(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: list[Fitted], entrance: str) -> None:
     """Put doors where the file leaves them open; refuse a plan in which a room cannot be reached."""
-    while lost := [r.room_id for r in rooms if r.room_id not in _depths(fitted, entrance)]:
-        reached = set(_depths(fitted, entrance))
+    while lost := [r.room_id for r in rooms if r.room_id not in (reached := hops(_passages(fitted), entrance))]:
         door = None
         if sketch.doors != "all":
             kinds = {r.room_id: r.type for r in rooms}
-            pairs = [s for s in walls if len(s.rooms) == 2 and len(set(s.rooms) & reached) == 1]
+            pairs = [s for s in walls if len(s.rooms) == 2 and len(reached.keys() & s.rooms) == 1]
             # through a hall rather than through a bedroom or a bathroom, then through the longest wall
-            pairs.sort(key=lambda s: (_rank(kinds[next(iter(set(s.rooms) & reached))]), -round(s.length, 3)))
+            pairs.sort(key=lambda s: (_rank(kinds[next(r for r in s.rooms if r in reached)]), -round(s.length, 3)))
             door = next((f for s in pairs if (f := put_door(_fresh("door", fitted), s.rooms, [s], fitted))), None)
         if door is None:
-            if sketch.foreign and _leave(sketch, rooms, fitted, lost):
+            area = {r.room_id: r.area for r in rooms}
+            if sketch.foreign and 2 * sum(area[r] for r in lost) <= sum(area.values()):
+                _leave_out(sketch, rooms, fitted, lost, "nothing leads to it")
                 continue
             _explain(rooms, walls, lost)
             raise refuse(f"there is no way from {entrance} to {', '.join(lost)}", "add doors between them")
         fitted.append(door)
-        sketch.repair("door", door.opening.opening_id, f"no door leads to {' or '.join(set(door.opening.rooms) - reached)}: one is put")
-
-
-def _leave(sketch: Sketch, rooms: list[Room], fitted: list[Fitted], lost: list[str]) -> bool:
-    """Leave rooms out that nothing leads to, stating it; not where they are the larger part of the home."""
-    area = {r.room_id: r.area for r in rooms}
-    if 2 * sum(area[r] for r in lost) > sum(area.values()):
-        return False
-    _leave_out(sketch, rooms, fitted, lost, "nothing leads to it")
-    return True
+        sketch.repair(
+            "door", door.opening.opening_id, f"no door leads to {' or '.join(set(door.opening.rooms) - reached.keys())}: one is put"
+        )
 
 
 def _leave_out(sketch: Sketch, rooms: list[Room], fitted: list[Fitted], lost: list[str], why: str) -> None:
+    """Leave rooms out, stating it."""
     for room in lost:
         sketch.repair("left_out", room, f"left out: {why}")
     rooms[:] = [r for r in rooms if r.room_id not in lost]
@@ -298,12 +272,43 @@ def _rank(kind: str) -> int:
     return 0 if kind in {"hallway", "entry"} else 1 if kind in INTO else 3 if kind in {"bathroom", "wc", "balcony"} else 2
 
 
-def _depths(fitted: list[Fitted], entrance: str) -> dict[str, int]:
-    """Return each reached room's distance from the entrance in openings."""
-    pairs = (f.opening.rooms for f in fitted if f.opening.kind in PASSAGES)
-    return hops((rooms for rooms in pairs if len(rooms) == 2), entrance)
+def _passages(fitted: list[Fitted]) -> list[tuple[str, ...]]:
+    """Return the pairs of rooms between which one can walk."""
+    return [f.opening.rooms for f in fitted if f.opening.kind in PASSAGES and len(f.opening.rooms) == 2]
 
 
 def _fresh(kind: str, fitted: list[Fitted]) -> str:
     taken = {f.opening.opening_id for f in fitted}
     return next(name for k in itertools.count() if (name := f"{kind}_{k}") not in taken)
+
+
+def program_of(plan: Plan) -> FloorProgram:
+    """Return the completed program that the plan answers to. Nothing in it was said in words."""
+    own = ("type", "role", "functions", "level")
+    rooms = [
+        RoomReq.model_validate({name: getattr(r, name) for name in own} | {"id": r.room_id, "area": _stated(r.area), "stated": False})
+        for r in plan.rooms
+    ]
+    pairs: dict[tuple[str, str], str] = {}
+    for o in plan.openings:
+        if o.kind in PASSAGES and len(o.rooms) == 2:
+            pairs.setdefault((min(o.rooms), max(o.rooms)), o.kind)
+    links = tuple(Link(a=a, b=b, kind=kind) for (a, b), kind in sorted(pairs.items()))  # type: ignore[arg-type]
+    inside = sum(r.area for r in plan.rooms if r.type not in OUTSIDE)
+    return FloorProgram(
+        storeys=1 + max(r.level for r in plan.rooms),
+        total_area=_stated(inside) if round(inside, 3) else Range(),
+        rooms=tuple(rooms),
+        links=links,
+        entrance=Entrance(into=plan.entrance),
+        shell=Shell(inner_wall=_wall(plan.inner_wall), outer_wall=_wall(plan.outer_wall), ceiling=max(r.height for r in plan.rooms)),
+        only=True,
+    )
+
+
+def _stated(area: float) -> Range:
+    return Range(target=round(area, 3), stated=True)
+
+
+def _wall(thickness: float) -> float:
+    return round(min(max(thickness, THINNEST), THICKEST), 4)

@@ -2,7 +2,6 @@
 
 import itertools
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import shapely
@@ -33,16 +32,14 @@ def to_metres(sketch: Sketch) -> None:
     if not sketch.units:
         sketch.repair("units", "plan", f"no unit is stated and rooms are {middle:.0f} wide: lengths are taken as {unit}")
     scale = UNITS[unit]
-    for room in sketch.rooms:
-        room.ring = room.ring * scale
-        room.height = room.height * scale if room.height > HIGHEST else room.height
-    for o in sketch.openings:
-        o.segment = None if o.segment is None else o.segment * scale
-        o.at = None if o.at is None else o.at * scale
-        o.width = None if o.width is None else o.width * scale
-        o.height = o.height * scale if o.height is not None and o.height > HIGHEST else o.height
-        o.sill = o.sill * scale if o.sill is not None and o.sill > HIGHEST else o.sill
-    _scale_walls(sketch, scale)
+    sketch.move(lambda points: points * scale)
+    # a short form may state heights and thicknesses in metres beside millimetres of corners
+    lengths = (("width", 0.0), ("height", HIGHEST), ("sill", HIGHEST), ("inner_wall", 0.7), ("outer_wall", 0.7), ("storey_height", HIGHEST))
+    for item in (sketch, *sketch.rooms, *sketch.openings):
+        for name, most in lengths:
+            value = getattr(item, name, None)
+            if value is not None and value > most:
+                setattr(item, name, value * scale)
 
 
 def _likely(side: float) -> str:
@@ -56,14 +53,6 @@ def _likely(side: float) -> str:
     return "m"
 
 
-def _scale_walls(sketch: Sketch, scale: float) -> None:
-    """Scale thicknesses and the storey's height, which a short form may state in metres beside millimetres of corners."""
-    for name, most in (("inner_wall", 0.7), ("outer_wall", 0.7), ("storey_height", HIGHEST)):
-        value = getattr(sketch, name)
-        if value is not None and value > most:
-            setattr(sketch, name, value * scale)
-
-
 def clean_rings(sketch: Sketch) -> None:
     """Make every ring a room polygon, stating repairs. Raises RefusedError for what cannot be one."""
     corners = np.vstack([r.ring for r in sketch.rooms if len(r.ring)] or [np.zeros((1, 2))])
@@ -73,7 +62,7 @@ def clean_rings(sketch: Sketch) -> None:
     if np.abs(corners).max() > FAR:
         origin = np.floor(corners.min(axis=0))
         sketch.repair("origin", "plan", f"it lies {np.linalg.norm(origin) / 1000:.1f} km from the origin and is moved there")
-        _shift(sketch, -origin)
+        sketch.move(lambda points: points - origin)
     for room in sketch.rooms:
         if len(room.ring) > MAX_CORNERS:
             raise refuse(f"{room.room_id} has {len(room.ring)} corners; at most {MAX_CORNERS} are read")
@@ -85,14 +74,6 @@ def clean_rings(sketch: Sketch) -> None:
     whole = sum(shapely.Polygon(r.ring).area for r in sketch.rooms)
     if whole > LARGEST:
         raise refuse(f"it has {whole:.0f} m2; a home has {LARGEST:g} m2 at most")
-
-
-def _shift(sketch: Sketch, by: Floats) -> None:
-    for room in sketch.rooms:
-        room.ring = room.ring + by
-    for o in sketch.openings:
-        o.segment = None if o.segment is None else o.segment + by
-        o.at = None if o.at is None else o.at + by
 
 
 def _ring(sketch: Sketch, room: SketchRoom) -> Floats:
@@ -158,7 +139,7 @@ def apart(sketch: Sketch) -> None:
         room = isinstance(rest, shapely.Polygon) and not rest.interiors and rest.area >= LEAST_AREA
         if not room or (depth > SLIVER and not sketch.foreign):
             raise refuse(f"{a.room_id} and {b.room_id} overlap by {common.area:.3g} m2", "rooms of one storey must not overlap")
-        b.ring = np.round(without_collinear(np.asarray(shapely.geometry.polygon.orient(rest, 1.0).exterior.coords)[:-1]), 3)
+        b.ring = np.round(without_collinear(corners_of(rest)), 3)
         sketch.repair("overlap", b.room_id, f"{100 * depth:.1f} cm of it lay in {a.room_id} and are cut off")
 
 
@@ -173,10 +154,14 @@ def shrink(sketch: Sketch, by: float) -> None:
         inner = shapely.Polygon(room.ring).buffer(-by, join_style="mitre", mitre_limit=10.0)
         if not isinstance(inner, shapely.Polygon) or inner.is_empty or inner.area < LEAST_AREA:
             raise refuse(f"{room.room_id} is too small or too narrow for walls {200 * by:.0f} cm thick on its centre lines")
-        ring = np.asarray(shapely.geometry.polygon.orient(inner, 1.0).exterior.coords)[:-1]
-        room.ring = np.round(without_collinear(ring), 3) + 0.0
+        room.ring = np.round(without_collinear(corners_of(inner)), 3) + 0.0
 
 
-def _signed_area(ring: Sequence[Floats] | Floats) -> float:
-    x, y = np.asarray(ring, float).T
+def corners_of(shape: shapely.Polygon) -> Floats:
+    """Return the corners of a polygon's outline, counter-clockwise."""
+    return np.asarray(shapely.geometry.polygon.orient(shape, 1.0).exterior.coords)[:-1]
+
+
+def _signed_area(ring: Floats) -> float:
+    x, y = ring.T
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

@@ -1,13 +1,14 @@
 """A plan as its file has it: rings and openings that nobody has checked yet, and the repairs that are made on the way."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.plan import OpeningKind, Swing
+from pipeline.entities.plan import OpeningKind, Room, Swing
 from pipeline.errors import RefusedError
 
 Floats = NDArray[np.float64]
@@ -38,6 +39,10 @@ class SketchRoom:
     height: float = 2.7
     role: str = ""
     functions: tuple[str, ...] = ()
+
+    def room(self) -> Room:
+        """Return it as a room of a plan."""
+        return Room(self.room_id, self.type, self.ring, self.level, round(self.height, 3), self.role, functions=self.functions)
 
 
 @dataclass(slots=True)
@@ -74,6 +79,14 @@ class Sketch:
     units: str = ""
     foreign: bool = False
     repairs: list[Repair] = field(default_factory=list)
+
+    def move(self, change: Callable[[Floats], Floats]) -> None:
+        """Change all coordinates."""
+        for room in self.rooms:
+            room.ring = change(room.ring)
+        for o in self.openings:
+            o.segment = None if o.segment is None else change(o.segment)
+            o.at = None if o.at is None else change(o.at)
 
     def repair(self, code: str, where: str, text: str) -> None:
         """State a repair."""

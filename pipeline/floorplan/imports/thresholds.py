@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from pipeline.entities.plan import Room
-from pipeline.floorplan.imports.rings import LEAST_AREA, without_collinear
+from pipeline.floorplan.imports.rings import LEAST_AREA, corners_of, without_collinear
 from pipeline.floorplan.imports.sketch import Floats, Sketch, SketchRoom
 from pipeline.floorplan.imports.walls import TOUCH, Stretch, stretches
 
@@ -95,8 +94,7 @@ def _rest(ring: Floats, strip: shapely.Polygon) -> Floats | None:
     largest = max(parts, key=lambda p: p.area, default=None)
     if largest is None or largest.area < LEAST_AREA or largest.area < 0.8 * shapely.Polygon(ring).area:
         return None
-    corners = np.asarray(shapely.geometry.polygon.orient(largest, 1.0).exterior.coords)[:-1]
-    return np.round(without_collinear(np.round(corners, 4)), 4) + 0.0
+    return np.round(without_collinear(np.round(corners_of(largest), 4)), 4) + 0.0
 
 
 def put_walls(sketch: Sketch, thickness: float) -> None:
@@ -123,7 +121,7 @@ def _mark(stretch: Stretch) -> tuple[tuple[str, ...], float]:
 
 def _touching(sketch: Sketch) -> Iterator[Stretch]:
     """Yield where rooms touch on more than the open fronts and portals between them."""
-    known = [Room(r.room_id, r.type, r.ring, r.level) for r in sketch.rooms]
+    known = [r.room() for r in sketch.rooms]
     fronts = [(set(o.rooms), o.segment) for o in sketch.openings if o.kind in OPEN and o.segment is not None]
     for stretch in stretches(known, 0, DEEPEST):
         if len(stretch.rooms) == 2 and stretch.gap < TOUCH:

@@ -4,36 +4,16 @@ import difflib
 import re
 import typing
 
+from pipeline import taxonomy
 from pipeline.floorplan.imports.sketch import Sketch, refuse
 from pipeline.floorplan.program.floor_program import Role, RoomReq, RoomType
 
 TYPES: tuple[str, ...] = typing.get_args(RoomType)
 ROLES: tuple[str, ...] = typing.get_args(Role)
 FUNCTIONS: tuple[str, ...] = typing.get_args(typing.get_args(RoomReq.model_fields["functions"].annotation)[0])
-ALIASES = {
-    # people
-    "living": "living_room", "lounge": "living_room", "sitting_room": "living_room", "bed_room": "bedroom", "bath": "bathroom",
-    "bath_room": "bathroom", "shower_room": "bathroom", "toilet": "wc", "powder_room": "wc", "restroom": "wc", "hall": "hallway",
-    "corridor": "hallway", "landing": "hallway", "foyer": "entry", "entrance": "entry", "entrance_hall": "entry", "vestibule": "entry",
-    "study": "office", "living_dining_room": "living_room", "living_dining": "living_room", "home_office": "office", "studio": "studio_room", "stairs": "staircase", "stairwell": "staircase", "dining": "dining_room",
-    "laundry": "utility", "laundry_room": "utility", "utility_room": "utility", "storage_room": "storage", "store": "storage",
-    "pantry": "storage", "wardrobe": "closet", "dressing_room": "closet", "walk_in_closet": "closet", "terrace": "balcony", "loggia": "balcony",
-    "patio": "balcony", "conservatory": "sunroom", "nursery": "bedroom", "kitchenette": "kitchen",
-    # 3D-FRONT
-    "livingdiningroom": "living_room", "livingroom": "living_room", "diningroom": "dining_room", "masterbedroom": "bedroom",
-    "secondbedroom": "bedroom", "kidsroom": "bedroom", "elderlyroom": "bedroom", "nannyroom": "bedroom", "masterbathroom": "bathroom",
-    "secondbathroom": "bathroom", "aisle": "hallway", "storageroom": "storage", "cloakroom": "closet", "laundryroom": "utility",
-    "equipmentroom": "utility", "courtyard": "balcony", "auditorium": "media_room", "otherroom": "storage",
-}  # fmt: skip
+ALIASES = {name: kind for kind, known in taxonomy.load().types.items() for name in known.called}
 FUNCTIONS_OF = dict.fromkeys(("livingdiningroom", "livingdining"), ("living", "dining"))
-ROLE_OF = {
-    "masterbedroom": "primary",
-    "master_bedroom": "primary",
-    "kidsroom": "child",
-    "nursery": "child",
-    "elderlyroom": "elder",
-    "nannyroom": "staff",
-}
+ROLE_OF = {"masterbedroom": "primary", "kidsroom": "child", "nursery": "child", "elderlyroom": "elder", "nannyroom": "staff"}
 
 
 def resolve_types(sketch: Sketch) -> None:
@@ -54,7 +34,7 @@ def resolve_types(sketch: Sketch) -> None:
             hint = f"did you mean {near[0]}?" if near else f"types are {', '.join(TYPES)}"
             raise refuse(f"{room.room_id} has the unknown type {said[:40]!r}", hint)
         if not room.role:
-            room.role = ROLE_OF.get(plain, ROLE_OF.get(kind, ""))
+            room.role = ROLE_OF.get(plain, "")
         room.functions = tuple(f for f in room.functions if f in FUNCTIONS) or FUNCTIONS_OF.get(plain, ())
         if room.role not in ROLES:
             sketch.repair("role", room.room_id, f"the unknown role {room.role[:40]!r} is left out")

@@ -1,11 +1,14 @@
 """From what was said to what can be built: one entry per room, levels, links, entrance and areas filled by documented defaults."""
 
+from collections import Counter
+from collections.abc import Sequence
+
 from pipeline.floorplan.program.areas import with_areas
 from pipeline.floorplan.program.consistency import names, reach, storeys
-from pipeline.floorplan.program.distance import distances, nearness
-from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, RoomReq, Shell
+from pipeline.floorplan.program.defaults import INTO
+from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, RoomReq, RoomType, Shell
 from pipeline.floorplan.program.furniture import allot, matching_categories, spread
-from pipeline.floorplan.program.links import connect, is_forbidden, resolve
+from pipeline.floorplan.program.links import connect, distances, is_forbidden, nearness, resolve
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
 BESIDE = {"bathroom", "wc", "closet", "balcony", "storage", "utility", "hallway", "office"}  # lie on the storey of what they are joined to
@@ -144,31 +147,30 @@ def _storeys(program: FloorProgram) -> tuple[RoomReq, ...]:
     if program.storeys == 3 and not any(r.level == 2 for r in rooms):
         rooms = _spread(rooms)
     if not any(r.type == "staircase" for r in rooms):
-        rooms.append(RoomReq(id=_name("stairs", rooms), type="staircase", level=0, stated=False, inferred=True))
+        rooms.append(_more("stairs", "staircase", 0, rooms))
     for level in range(1, program.storeys):
-        here = [r for r in rooms if r.level == level]
-        if not here:
-            continue
-        if not any(r.type == "hallway" for r in here):
-            name = _name("landing" if level == 1 else f"landing_{level}", rooms)
-            rooms.append(RoomReq(id=name, type="hallway", level=level, stated=False, inferred=True))
+        here = {r.type for r in rooms if r.level == level}
+        if here and "hallway" not in here:
+            rooms.append(_more("landing" if level == 1 else f"landing_{level}", "hallway", level, rooms))
     return tuple(rooms)
 
 
 def _spread(rooms: list[RoomReq]) -> list[RoomReq]:
     """Move every second room of each type from the first upper storey to an empty second one."""
-    counts: dict[str, int] = {}
-    result = []
-    for room in rooms:
+    counts: Counter[str] = Counter()
+    for k, room in enumerate(rooms):
         if room.level == 1 and room.type != "hallway":
-            counts[room.type] = counts.get(room.type, 0) + 1
-            result.append(room.model_copy(update={"level": 2 if counts[room.type] % 2 == 0 else 1}))
-        else:
-            result.append(room)
-    return result
+            counts[room.type] += 1
+            rooms[k] = room.model_copy(update={"level": 2 if counts[room.type] % 2 == 0 else 1})
+    return rooms
 
 
-def _name(wanted: str, rooms: list[RoomReq]) -> str:
+def _more(wanted: str, kind: RoomType, level: int | None, rooms: Sequence[RoomReq]) -> RoomReq:
+    """Return a room more that nobody named, for the plan needs it."""
+    return RoomReq(id=_name(wanted, rooms), type=kind, level=level, stated=False, inferred=True)
+
+
+def _name(wanted: str, rooms: Sequence[RoomReq]) -> str:
     used = {r.id for r in rooms}
     name, k = wanted, 2
     while name in used:
@@ -192,9 +194,9 @@ def _add_circulation(program: FloorProgram) -> tuple[RoomReq, ...]:
     wanted = len(loose) >= 3 and len(beds) >= 2 and "hallway" not in never
     hubless = len(ground) > 2 and not any(r.type in HUBLESS for r in ground)
     if hubless and not program.only and "entry" not in never:
-        rooms.append(RoomReq(id=_name("entry", rooms), type="entry", level=0, stated=False, inferred=True))
+        rooms.append(_more("entry", "entry", 0, rooms))
     elif wanted and not program.only:
-        rooms.append(RoomReq(id=_name("hall", rooms), type="hallway", level=0, stated=False, inferred=True))
+        rooms.append(_more("hall", "hallway", 0, rooms))
     return tuple(rooms)
 
 
@@ -203,21 +205,23 @@ def _join(program: FloorProgram) -> FloorProgram:
 
     Where what may not be joined would be, or a room lies behind one that must not be passed, an entry more gives another way.
     """
-    joined = program.model_copy(update={"links": connect(program)})
+    joined = _connected(program)
     if _violates_forbids(joined) and not program.only and "entry" not in _forbidden_types(program):
-        entry = RoomReq(id=_name("entry", list(program.rooms)), type="entry", level=0, stated=False, inferred=True)
-        around = program.model_copy(update={"rooms": (*program.rooms, entry)})
-        around = around.model_copy(update={"links": connect(around)})
+        around = _connected(program, _more("entry", "entry", 0, program.rooms))
         if not _violates_forbids(around):
             return around
     broken = nearness(distances(program), joined.links)
     if not broken or program.only or "hallway" in _forbidden_types(program):
         return joined
-    level = next(r.level for r in program.rooms if r.id == broken[0].asked.a)
-    hall = RoomReq(id=_name("hall", list(program.rooms)), type="hallway", level=level, stated=False, inferred=True)
-    wider = program.model_copy(update={"rooms": (*program.rooms, hall)})
-    wider = wider.model_copy(update={"links": connect(wider)})
+    level = next(r.level for r in program.rooms if r.id == broken[0][0].a)
+    wider = _connected(program, _more("hall", "hallway", level, program.rooms))
     return joined if nearness(distances(wider), wider.links) else wider
+
+
+def _connected(program: FloorProgram, *more: RoomReq) -> FloorProgram:
+    """Return the program with more rooms and all its links."""
+    program = program.model_copy(update={"rooms": (*program.rooms, *more)})
+    return program.model_copy(update={"links": connect(program)})
 
 
 def _violates_forbids(program: FloorProgram) -> bool:
@@ -232,14 +236,10 @@ def _violates_forbids(program: FloorProgram) -> bool:
 
 
 def _entrance(program: FloorProgram) -> Entrance:
-    if program.entrance.into and program.select(program.entrance.into):
-        into = program.select(program.entrance.into)[0].id
-        return program.entrance.model_copy(update={"into": into})
+    stated = program.select(program.entrance.into or "")
+    if stated:
+        return program.entrance.model_copy(update={"into": stated[0].id})
     ground = [r for r in program.rooms if r.level == 0]
-    order = ("entry", "hallway", "living_room", "studio_room", "family_room", "kitchen", "dining_room", "office")
-    for kind in order:
-        for room in ground:
-            if room.type == kind:
-                return program.entrance.model_copy(update={"into": room.id, "stated": False})
-    best = [r for r in ground if r.type not in {"bathroom", "wc", "balcony", "closet"}] or ground
+    usual = [r for kind in INTO for r in ground if r.type == kind]
+    best = usual or [r for r in ground if r.type not in {"bathroom", "wc", "balcony", "closet"}] or ground
     return program.entrance.model_copy(update={"into": best[0].id, "stated": False})

@@ -1,13 +1,15 @@
 """Is a completed program consistent? Contradictions and impossibilities are refused, naming the words that clash."""
 
+import itertools
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from pipeline.errors import RefusedError
+from pipeline.floorplan.program.daylight import is_flat
 from pipeline.floorplan.program.defaults import DEFAULTS, OUTSIDE
-from pipeline.floorplan.program.distance import distances, nearness
 from pipeline.floorplan.program.floor_program import MAX_ROOMS, Evidence, FloorProgram, RoomReq
-from pipeline.floorplan.program.furniture import faults
+from pipeline.floorplan.program.furniture import faults as furniture_faults
+from pipeline.floorplan.program.links import distances, nearness
 
 LEAST_SHARE = 0.4  # a room of less than this share of its type's usual area is no such room
 CORNERS = {"rectangle": 4, "L": 5, "T": 6, "any": 6}  # of an outline that stick out
@@ -26,23 +28,21 @@ class ImpossibleError(RefusedError):
         super().__init__(f"{message} ({' / '.join(repr(w) for w in words)})" if words else message, remedy)
 
 
+Fault = tuple[str, str, list[Evidence]]  # what cannot be, what helps, and the words that clash
+
+
 def check(program: FloorProgram) -> None:
     """Raise ImpossibleError (a RefusedError) for a program that no plan can meet."""
     names(program)
-    _shell(program)
-    _forbidden(program)
-    _areas(program)
-    _degrees(program)
-    _ways(program)
-    _distances(program)
-    _corners(program)
-    _planar(program)
+    for faults in (_shell, _forbidden, _areas, _degrees, _ways, _distances, _corners, _planar):
+        for fault in faults(program):
+            raise ImpossibleError(*fault)
     check_furniture(program)
 
 
 def check_furniture(program: FloorProgram) -> None:
     """Raise ImpossibleError for the first wish for furniture that no room can meet."""
-    for message, remedy, fields in faults(program):
+    for message, remedy, fields in furniture_faults(program):
         raise ImpossibleError(message, remedy, evidence_for(program, *fields))
 
 
@@ -81,31 +81,26 @@ def storeys(program: FloorProgram) -> None:
             raise ImpossibleError(f"{k.a} and {k.b} are to be joined and lie on different storeys", "put both on one storey", words)
 
 
-def _shell(program: FloorProgram) -> None:
-    shell = program.shell
-    if shell.outer_wall < shell.inner_wall:
-        raise ImpossibleError(
-            f"outside walls of {shell.outer_wall:g} m are thinner than those between rooms, {shell.inner_wall:g} m",
-            "make them as thick at least",
-            evidence_for(program, "shell"),
-        )
+def _shell(program: FloorProgram) -> Iterator[Fault]:
+    inner, outer = program.shell.inner_wall, program.shell.outer_wall
+    if outer < inner:
+        message = f"outside walls of {outer:g} m are thinner than those between rooms, {inner:g} m"
+        yield message, "make them as thick at least", evidence_for(program, "shell")
 
 
-def _forbidden(program: FloorProgram) -> None:
+def _forbidden(program: FloorProgram) -> Iterator[Fault]:
     for f in program.forbids:
-        rooms = program.select(f.a)
         if f.what == "room_type":
             there = [r for r in program.rooms if r.type == f.a and r.stated]
             if there:
                 words = evidence_for(program, f"forbids.room_type.{f.a}", *(f"rooms.{r.id}" for r in there))
-                raise ImpossibleError(f"a {f.a.replace('_', ' ')} is both asked for and ruled out", "keep one of the two", words)
+                yield f"a {f.a.replace('_', ' ')} is both asked for and ruled out", "keep one of the two", words
             continue
-        others = program.select(f.b) if f.b else ()
+        apart = [{a.id, b.id} for a in program.select(f.a) for b in program.select(f.b or "") if a.id != b.id]
         for k in program.links:
-            hit = any({a.id, b.id} == k.ends for a in rooms for b in others if a.id != b.id)
-            if hit and (f.what == "adjacent" or (f.what == "connected" and k.opens) or (f.what == "open" and k.kind == "open")):
+            if k.ends in apart and (f.what == "adjacent" or (f.what == "connected" and k.opens) or (f.what == "open" and k.kind == "open")):
                 words = evidence_for(program, f"forbids.{f.what}.{f.a}", *k.fields)
-                raise ImpossibleError(f"{k.a} and {k.b} are to be joined and kept apart", "keep one of the two", words)
+                yield f"{k.a} and {k.b} are to be joined and kept apart", "keep one of the two", words
 
 
 def _least(room: RoomReq) -> float:
@@ -117,74 +112,59 @@ def _least(room: RoomReq) -> float:
     return LEAST_SHARE * DEFAULTS[room.type].area
 
 
-def _areas(program: FloorProgram) -> None:
+def _areas(program: FloorProgram) -> Iterator[Fault]:
     for room in program.rooms:
         low, high = room.area.min, room.area.max
         if low is not None and high is not None and low > high:
             words = evidence_for(program, f"rooms.{room.id}.area")
-            raise ImpossibleError(f"{room.id} is to have at least {low:g} and at most {high:g} m²", "swap the two", words)
+            yield f"{room.id} is to have at least {low:g} and at most {high:g} m²", "swap the two", words
     inside = [r for r in program.rooms if r.type not in OUTSIDE]
-    most = program.total_area.max
-    if most is None and program.total_area.stated and program.total_area.target:
-        most = program.total_area.target * 1.1
+    whole = program.total_area
+    most = whole.target * 1.1 if whole.max is None and whole.stated and whole.target else whole.max
     least = sum(_least(r) for r in inside)
     if most is not None and least > most * WALLS:
-        words = evidence_for(program, "total_area", "rooms")
-        raise ImpossibleError(
-            f"{len(inside)} rooms need at least {least:.0f} m² and {most:.0f} m² are allowed",
-            "ask for fewer rooms or more area",
-            [w for w in words if w.field == "total_area" or w.field.endswith(".area") or w.field == "rooms"],
-        )
-    stated = [r for r in inside if r.area.stated]
-    low = program.total_area.min if program.total_area.stated else None
-    if low is not None and len(stated) == len(inside):
+        rooms = {f"rooms.{r.id}.area" for r in program.rooms}
+        words = [w for w in program.evidence if w.field in {"total_area", "rooms", *rooms}]
+        message = f"{len(inside)} rooms need at least {least:.0f} m² and {most:.0f} m² are allowed"
+        yield message, "ask for fewer rooms or more area", words
+    low = whole.min if whole.stated else None
+    if low is not None and all(r.area.stated for r in inside):
         largest = sum(r.area.max or (r.area.target or r.area.min or 0.0) * (1.1 if r.area.min is None else 3.0) for r in inside)
         if largest < low / WALLS:
             words = evidence_for(program, "total_area", *(f"rooms.{r.id}.area" for r in inside))
-            raise ImpossibleError(f"the rooms add up to {largest:.0f} m², the home to at least {low:.0f} m²", "change one", words)
-    for relation in program.relations:
-        if relation.kind != "area_order":
-            continue
-        for a in program.select(relation.a):
-            for b in program.select(relation.b or ""):
-                high = a.area.max or (a.area.target if a.area.stated else None)
-                if a.id != b.id and high is not None and b.area.stated and high * 1.1 < relation.value * _least(b):
-                    words = evidence_for(program, f"relations.area_order.{a.id}", f"rooms.{a.id}.area", f"rooms.{b.id}.area")
-                    raise ImpossibleError(f"{a.id} cannot be {relation.value:g} times as large as {b.id}", "change an area", words)
+            yield f"the rooms add up to {largest:.0f} m², the home to at least {low:.0f} m²", "change one", words
+    for relation in (r for r in program.relations if r.kind == "area_order"):
+        for a, b in itertools.product(program.select(relation.a), program.select(relation.b or "")):
+            high = a.area.max or (a.area.target if a.area.stated else None)
+            if a.id != b.id and high is not None and b.area.stated and high * 1.1 < relation.value * _least(b):
+                words = evidence_for(program, f"relations.area_order.{a.id}", f"rooms.{a.id}.area", f"rooms.{b.id}.area")
+                yield f"{a.id} cannot be {relation.value:g} times as large as {b.id}", "change an area", words
 
 
-def _degrees(program: FloorProgram) -> None:
-    for relation in program.relations:
-        if relation.kind != "degree":
-            continue
+def _degrees(program: FloorProgram) -> Iterator[Fault]:
+    for relation in (r for r in program.relations if r.kind == "degree"):
         for room in program.select(relation.a):
             joined = [k for k in program.links if room.id in k.ends and k.opens]
             if len(joined) > relation.value:
-                fields = [x for k in joined for x in k.fields]
-                words = evidence_for(program, f"relations.degree.{room.id}", *fields)
-                raise ImpossibleError(
-                    f"{room.id} is to have {relation.value:g} door{'s' * (relation.value != 1)} and is joined to {len(joined)} rooms",
-                    "drop one of the links",
-                    words,
-                )
+                doors = f"{relation.value:g} door{'s' * (relation.value != 1)}"
+                words = evidence_for(program, f"relations.degree.{room.id}", *(x for k in joined for x in k.fields))
+                yield f"{room.id} is to have {doors} and is joined to {len(joined)} rooms", "drop one of the links", words
 
 
-def _ways(program: FloorProgram) -> None:
+def _ways(program: FloorProgram) -> Iterator[Fault]:
     """Every room is reached from the entrance, bathrooms are no thoroughfares, and avoided rooms are avoided."""
     root = program.entrance.into or ""
     reached = reach(program, root, frozenset())
     for room in program.rooms:
         if room.id not in reached:
             words = evidence_for(program, f"rooms.{room.id}")
-            raise ImpossibleError(f"{room.id} can be reached only through a bathroom or a bedroom", "say what it opens off", words)
-    for f in program.forbids:
-        if f.what != "through" or not f.avoid:
-            continue
-        avoid = frozenset(r.id for r in program.select(f.avoid))
+            yield f"{room.id} can be reached only through a bathroom or a bedroom", "say what it opens off", words
+    for f in (f for f in program.forbids if f.what == "through" and f.avoid):
+        avoid = frozenset(r.id for r in program.select(f.avoid or ""))
         for room in program.select(f.a):
             if room.id not in reach(program, root, avoid - {room.id}):
                 words = evidence_for(program, f"forbids.through.{f.a}", *(f"links.{room.id}-{i}" for i in avoid))
-                raise ImpossibleError(f"{room.id} can be reached only through {', '.join(sorted(avoid))}", "add another door", words)
+                yield f"{room.id} can be reached only through {', '.join(sorted(avoid))}", "add another door", words
 
 
 def reach(program: FloorProgram, root: str, avoid: frozenset[str]) -> set[str]:
@@ -210,55 +190,29 @@ def reach(program: FloorProgram, root: str, avoid: frozenset[str]) -> set[str]:
     return reachable
 
 
-def _distances(program: FloorProgram) -> None:
-    for asked, hops in nearness(distances(program), program.links):
+def _distances(program: FloorProgram) -> Iterator[Fault]:
+    for asked, openings in nearness(distances(program), program.links):
         fields = [x for k in program.links if {asked.a, asked.b} == k.ends for x in k.fields]
         words = evidence_for(program, f"relations.hops.{asked.selector}", *fields)
-        raise ImpossibleError(
-            f"hops: {asked.a} and {asked.b} are to be at least {asked.least:g} openings apart and lie {hops} apart",
-            "drop a link between them, or let the home have a hallway more",
-            words,
-        )
+        message = f"hops: {asked.a} and {asked.b} are to be at least {asked.least:g} openings apart and lie {openings} apart"
+        yield message, "drop a link between them, or let the home have a hallway more", words
 
 
-def _corners(program: FloorProgram) -> None:
+def _corners(program: FloorProgram) -> Iterator[Fault]:
     """Refuse more corner rooms than an outline has corners: each belongs to one room."""
     most = max(CORNERS.values()) if program.storeys > 1 else CORNERS[program.footprint.shape]  # a smaller storey leaves one open
     for level in range(program.storeys):
         rooms = [r for r in program.rooms if r.exterior == "corner" and r.level == level]
         if len(rooms) > most:
-            words = evidence_for(program, *(f"rooms.{r.id}" for r in rooms))
-            raise ImpossibleError(
-                f"{len(rooms)} rooms of one storey are to have a corner of the outline ('exterior: corner'), which has {most}",
-                "ask for fewer corner rooms",
-                words,
-            )
+            message = f"{len(rooms)} rooms of one storey are to have a corner of the outline ('exterior: corner'), which has {most}"
+            yield message, "ask for fewer corner rooms", evidence_for(program, *(f"rooms.{r.id}" for r in rooms))
 
 
-def _planar(program: FloorProgram) -> None:
+def _planar(program: FloorProgram) -> Iterator[Fault]:
     """Rooms on one floor can touch only as the links of a planar graph do, those with outside walls on its outer face."""
     for level in range(program.storeys):
         ids = {r.id for r in program.rooms if r.level == level or r.type == "staircase"}
         links = [k for k in program.links if k.a in ids and k.b in ids]
-        if _core_link_count([(k.a, k.b) for k in links]) < 9:  # too few to be non-planar: K5 has 10 links, K3,3 has 9
-            continue
-        import networkx as nx
-
-        graph = nx.Graph([(k.a, k.b) for k in links])
-        if not nx.check_planarity(graph)[0]:
+        if not is_flat(links, ()):
             words = evidence_for(program, *(f"links.{k.a}-{k.b}" for k in links if k.stated))
-            raise ImpossibleError("the links between rooms cross: no flat plan has them all", "drop a link", words)
-
-
-def _core_link_count(links: list[tuple[str, str]]) -> int:
-    """Return how many links are left when rooms with one link are taken off, and those with two become one link: as planar as before."""
-    near: dict[str, set[str]] = {}
-    for a, b in links:
-        near.setdefault(a, set()).add(b)
-        near.setdefault(b, set()).add(a)
-    while (slack := next((a for a, others in near.items() if len(others) < 3), None)) is not None:
-        ends = near.pop(slack)
-        for a in ends:
-            near[a].discard(slack)
-            near[a] |= ends - {a}
-    return sum(map(len, near.values())) // 2
+            yield "the links between rooms cross: no flat plan has them all", "drop a link", words

@@ -9,3 +9,4 @@ LIVING_DINING = 24.0  # a living room of a home in which one dines nowhere else
 OUTSIDE = frozenset({"balcony", "garage"})  # not part of the total area
 HUBS = ("hallway", "entry", "living_room", "family_room", "studio_room", "dining_room", "kitchen", "office")
 DOOR, DOOR_HEIGHT = 0.8, 2.05
+INTO = ("entry", "hallway", "living_room", "studio_room", "family_room", "kitchen", "dining_room", "office")  # what one enters, best first

@@ -1,38 +1,20 @@
 """FloorProgram: the typed, versioned request that language is turned into and floor plans are solved from."""
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
+
+from pipeline import style, taxonomy
 
 MAX_ROOMS = 40
 MAX_PIECES = 200
 
-RoomType = Literal[
-    "living_room",
-    "family_room",
-    "kitchen",
-    "dining_room",
-    "bedroom",
-    "bathroom",
-    "wc",
-    "hallway",
-    "entry",
-    "closet",
-    "utility",
-    "storage",
-    "garage",
-    "balcony",
-    "staircase",
-    "office",
-    "studio_room",
-    "media_room",
-    "gym",
-    "library",
-    "playroom",
-    "meeting_room",
-    "workshop",
-    "sunroom",
-]
+if TYPE_CHECKING:
+    RoomType = str
+    FurnitureStyle = str
+else:  # of manifests/rooms.yaml and manifests/styles.yaml
+    RoomType = Literal[tuple(taxonomy.load().types)]
+    FurnitureStyle = Literal[tuple(name for name in style.load().styles if name != "Others")]
 Role = Literal["", "primary", "guest", "child", "elder", "staff", "carer", "shared"]
 LinkKind = Literal["door", "open", "portal", "any", "wall"]
 Slug = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
@@ -59,26 +41,6 @@ class Range(Model):
     stated: bool = False
 
 
-FurnitureStyle = Literal[
-    "Modern",
-    "Chinoiserie",
-    "Kids",
-    "European",
-    "Japanese",
-    "Southeast Asia",
-    "Industrial",
-    "American Country",
-    "Vintage/Retro",
-    "Light Luxury",
-    "Mediterranean",
-    "Korean",
-    "New Chinese",
-    "Nordic",
-    "European Classic",
-    "Ming Qing",
-    "Neoclassical",
-    "Minimalist",
-]
 Pieces = Annotated[int, Field(ge=0, le=MAX_PIECES)]
 
 

@@ -1,15 +1,44 @@
 """The graph of links: selectors resolved to rooms, and what nobody stated filled in until every room can be reached."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
+from pipeline.entities.plan import hops
 from pipeline.floorplan.program.defaults import DEFAULTS, HUBS
-from pipeline.floorplan.program.distance import Distance, distances, nearness
 from pipeline.floorplan.program.floor_program import FloorProgram, Link, Relation, RoomReq
 
 ANY_HUB = ("hallway", "entry", "living_room", "family_room", "studio_room", "dining_room", "kitchen", "office", "staircase")
 # Who stands for a group of joined rooms when the group is attached to the rest.
 FRONT = (*HUBS, "library", "media_room", "playroom", "gym", "meeting_room", "sunroom", "utility", "bedroom", "storage", "closet")
 BUDGET = 600  # sets of links that are tried before `hops` relations are given up
+
+
+class Distance(NamedTuple):
+    """At least `least` openings are to lie on every way from room `a` to room `b`; `selector` is what the request called `a`."""
+
+    selector: str
+    a: str
+    b: str
+    least: float
+
+
+def distances(program: FloorProgram) -> tuple[Distance, ...]:
+    """Return what the `hops` relations ask for, room by room; without `b` the rooms of `a` are meant with each other."""
+    return tuple(
+        Distance(r.a, a.id, b.id, r.value)
+        for r in program.relations
+        if r.kind == "hops"
+        for a in program.select(r.a)
+        for b in program.select(r.b or r.a)
+        if a.id != b.id
+    )
+
+
+def nearness(asked: Sequence[Distance], links: Sequence[Link]) -> list[tuple[Distance, int]]:
+    """Return the distances that the graph of links breaks, and how many openings there are. Rooms that nothing joins yet are far apart."""
+    pairs = [(link.a, link.b) for link in links if link.opens]
+    openings = [(distance, hops(pairs, distance.a).get(distance.b)) for distance in asked]
+    return [(distance, count) for distance, count in openings if count is not None and count < distance.least]
 
 
 def resolve(program: FloorProgram) -> tuple[Link, ...]:
@@ -111,51 +140,31 @@ def _unusual(program: FloorProgram, fronts: Sequence[RoomReq], main: frozenset[s
 
 
 def _groups(program: FloorProgram, links: Sequence[Link]) -> list[frozenset[str]]:
-    """Return the groups of rooms that one can walk between without passing through a bathroom."""
-    dead = {r.id: r for r in program.rooms if r.type in {"bathroom", "wc"}}
+    """Return the groups of rooms that one can walk between without passing through a bathroom, in the order of their first room."""
+    dead = {r.id for r in program.rooms if r.type in {"bathroom", "wc"}}
     rank = {t: i for i, t in enumerate(HUBS)}
     kinds = {r.id: r.type for r in program.rooms}
-    kept: list[Link] = []
+    kept: list[tuple[str, str]] = []
     used: set[str] = set()
     # of a bathroom's doors the one to the most public room counts
     for link in sorted(links, key=lambda k: min(rank.get(kinds[k.a], 99), rank.get(kinds[k.b], 99))):
-        ends = link.ends & set(dead)
+        ends = link.ends & dead
         if link.opens and not ends & used:
-            kept.append(link)
+            kept.append((link.a, link.b))
             used |= ends
-    return components([r.id for r in program.rooms], kept)
-
-
-def components(ids: Sequence[str], links: Iterable[Link]) -> list[frozenset[str]]:
-    """Return the groups of rooms that links with an opening join, in the order of their first room."""
-    parent = {i: i for i in ids}
-
-    def find(i: str) -> str:
-        while parent[i] != i:
-            i = parent[i]
-        return i
-
-    for link in links:
-        if link.opens:
-            parent[find(link.a)] = find(link.b)
-    groups: dict[str, set[str]] = {}
-    for i in ids:
-        groups.setdefault(find(i), set()).add(i)
-    return [frozenset(g) for g in groups.values()]
+    return list(dict.fromkeys(frozenset(hops(kept, r.id)) for r in program.rooms))
 
 
 def _root(program: FloorProgram, links: Sequence[Link]) -> str:
     """Return the room that the rest is attached to: the entrance if stated, else the busiest hub of the lowest storey."""
-    if program.entrance.into:
-        stated = program.select(program.entrance.into)
-        if stated:
-            return stated[0].id
-    degree = {r.id: _load(r, links) for r in program.rooms}
+    stated = program.select(program.entrance.into or "")
+    if stated:
+        return stated[0].id
     ground = [r for r in program.rooms if not r.level] or list(program.rooms)
     for kind in ("entry", "hallway", "living_room", "studio_room", *HUBS):
         same = [r for r in ground if r.type == kind]
         if same:
-            return max(same, key=lambda r: degree[r.id]).id
+            return max(same, key=lambda r: _load(r, links)).id
     return ground[0].id
 
 
@@ -205,7 +214,7 @@ def _load(room: RoomReq, links: Sequence[Link]) -> int:
 
 def _has(program: FloorProgram, host: RoomReq, kind: str, links: Sequence[Link]) -> bool:
     mates = {k.beyond(host.id) for k in links}
-    return any(r.type == kind and r.id in mates for r in program.rooms)
+    return any(r.id in mates for r in program.rooms if r.type == kind)
 
 
 def _is_full(program: FloorProgram, room: RoomReq, links: Sequence[Link]) -> bool:
@@ -218,16 +227,15 @@ def _is_full(program: FloorProgram, room: RoomReq, links: Sequence[Link]) -> boo
 
 
 def is_forbidden(program: FloorProgram, a: RoomReq, b: RoomReq) -> bool:
-    """Whether no opening may join two rooms."""
-    for f in program.forbids:
-        if f.what in {"adjacent", "connected"} and f.b:
-            if _covers(program, f.a, a) and _covers(program, f.b, b):
-                return True
-            if _covers(program, f.a, b) and _covers(program, f.b, a):
-                return True
-        if f.what == "through" and f.avoid and _covers(program, f.a, b) and _covers(program, f.avoid, a):
-            return True
-    return False
+    """Whether no opening may join two rooms; `b` would be the one farther in."""
+
+    def hits(one: str, other: str | None) -> bool:
+        return other is not None and _covers(program, one, b) and _covers(program, other, a)
+
+    apart = [f for f in program.forbids if f.what in {"adjacent", "connected"} and f.b]
+    return any(hits(f.a, f.b) or hits(f.b or "", f.a) for f in apart) or any(
+        hits(f.a, f.avoid) for f in program.forbids if f.what == "through"
+    )
 
 
 def _covers(program: FloorProgram, selector: str, room: RoomReq) -> bool:

@@ -5,7 +5,7 @@ Leaves sweep free floor: no other leaf's sweep, no other opening, no wall. Nothi
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -37,43 +37,49 @@ Point = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Run:
-    """A straight stretch of wall that is clear on both sides: line end points on the wall's centre line [m].
+    """A straight stretch of wall that is clear on both sides, on the wall's centre line [m].
 
-    `along` and `inward` are unit vectors; `inward` points into room `rooms[0]`; `half` is half the wall's thickness [m].
+    It runs along y (`vertical`, x = `line`) or along x, upwards from `start`. Room `rooms[0]` lies on its side of larger coordinates if
+    `way` is 1, of smaller ones if -1; `half` is half the wall's thickness [m].
     """
 
     rooms: tuple[str, ...]
-    start: Point
-    along: Point
-    inward: Point
-    length: float
-    level: int
     vertical: bool
+    line: float
+    start: float
+    length: float
+    way: float
+    level: int
     half: float
+
+    @property
+    def inward(self) -> Point:
+        """Unit vector into room `rooms[0]`."""
+        return np.array([self.way, 0.0] if self.vertical else [0.0, self.way])
 
     def segment(self, offset: float, width: float) -> Point:
         """Return the end points of an opening of `width` that begins `offset` from the start, to 1 mm."""
-        low, high = round(offset, 3), round(offset, 3) + round(width, 3)
-        return np.round(np.array([self.start + low * self.along, self.start + high * self.along]), 3)
+        low = round(offset, 3)
+        ends = (self.start + low, self.start + (low + round(width, 3)))
+        return np.round(np.array([(self.line, y) if self.vertical else (y, self.line) for y in ends]), 3)
 
 
 @dataclass
 class Site:
-    """What has been placed so far: openings, and the floor that they keep free per room."""
+    """What has been placed so far: openings with their runs and offsets, and the floor that leaves sweep per room."""
 
     rooms: dict[str, Room]
-    openings: list[Opening]
-    swept: list[tuple[str, shapely.Geometry]]
-    taken: list[tuple[int, bool, float, float, float]]  # level, vertical, line, from, to
     thickness: float  # of the thickest wall [m]
     ceiling: float  # height of the rooms [m]
+    openings: list[Opening] = field(default_factory=list)
+    taken: list[tuple[Run, float, float]] = field(default_factory=list)  # from, to [m]
+    swept: list[tuple[str, shapely.Geometry]] = field(default_factory=list)
 
     def free(self, run: Run, offset: float, width: float) -> bool:
         """Whether the stretch of wall overlaps no opening there is."""
-        low, high = _interval(run, offset, width)
-        line = run.start[0] if run.vertical else run.start[1]
-        for level, vertical, at, start, end in self.taken:
-            near = level == run.level and vertical == run.vertical and abs(at - line) < self.thickness
+        low, high = run.start + offset, run.start + (offset + width)
+        for other, start, end in self.taken:
+            near = (other.level, other.vertical) == (run.level, run.vertical) and abs(other.line - run.line) < self.thickness
             if near and low < end + FRAME and start < high + FRAME:
                 return False
         return True
@@ -82,18 +88,14 @@ class Site:
         """Return the height of a top that stays under the ceiling [m]."""
         return round(min(top, self.ceiling - LINTEL), 3)
 
-    def put(self, run: Run, opening: Opening, offset: float) -> None:
-        """Record an opening."""
-        low, high = _interval(run, offset, opening.width)
-        line = run.start[0] if run.vertical else run.start[1]
+    def put(
+        self, run: Run, kind: OpeningKind, offset: float, width: float, height: float, sill: float = 0.0, swing: Swing | None = None
+    ) -> None:
+        """Put an opening into a wall, `offset` from its start [m]."""
+        name = f"{kind}_{sum(o.opening_id.startswith(kind + '_') for o in self.openings)}"
+        opening = Opening(name, kind, run.rooms, run.segment(offset, width), height, sill, swing, run.level)
         self.openings.append(opening)
-        self.taken.append((run.level, run.vertical, float(line), low, high))
-
-
-def _interval(run: Run, offset: float, width: float) -> tuple[float, float]:
-    axis = 1 if run.vertical else 0
-    ends = sorted((run.start[axis] + offset * run.along[axis], run.start[axis] + (offset + width) * run.along[axis]))
-    return float(ends[0]), float(ends[1])
+        self.taken.append((run, run.start + offset, run.start + (offset + opening.width)))
 
 
 def leaf_sweep(segment: Point, hinge: int, inward: Point, radius: float) -> shapely.Polygon:
@@ -113,19 +115,21 @@ def place(
     `depth` is each room's distance from the entrance in openings: leaves swing into the farther room.
     """
     shell = program.shell
-    site = Site({r.room_id: r for r in rooms}, [], [], [], max(shell.inner_wall, shell.outer_wall), shell.ceiling)
+    site = Site({r.room_id: r for r in rooms}, max(shell.inner_wall, shell.outer_wall), shell.ceiling)
     requests = {r.id: r for r in program.rooms}
     wide = [k for k in program.links if k.kind in {"open", "portal"}]
     narrow = [k for k in program.links if k.kind == "door"]
     for link in wide:
-        if not _wide(site, [r for r in runs if set(r.rooms) == {link.a, link.b}], link.kind, {link.a, link.b}, requests):
+        if not _wide(
+            site, [r for r in runs if set(r.rooms) == link.ends], link.kind, any(requests[i].type == "staircase" for i in link.ends)
+        ):
             return None
     if not _entrance(program, site, runs, rng):
         return None
     # the tightest walls first
-    narrow.sort(key=lambda k: max((r.length for r in runs if set(r.rooms) == {k.a, k.b}), default=0.0))
+    narrow.sort(key=lambda k: max((r.length for r in runs if set(r.rooms) == k.ends), default=0.0))
     for link in narrow:
-        between = [r for r in runs if set(r.rooms) == {link.a, link.b}]
+        between = [r for r in runs if set(r.rooms) == link.ends]
         far, near = (link.a, link.b) if depth[link.a] >= depth[link.b] else (link.b, link.a)
         width = BALCONY_WIDTH if "balcony" in {requests[far].type, requests[near].type} else program.accessibility.min_door
         width = max(width, program.accessibility.min_door)
@@ -140,26 +144,16 @@ def place(
     return tuple(site.openings)
 
 
-def _next_id(site: Site, kind: str) -> str:
-    return f"{kind}_{sum(o.opening_id.startswith(kind + '_') for o in site.openings)}"
-
-
-def _wide(site: Site, between: Sequence[Run], kind: str, rooms: set[str], requests: dict[str, RoomReq]) -> bool:
+def _wide(site: Site, between: Sequence[Run], kind: str, stairs: bool) -> bool:
     """Open the whole wall (`open`) or a leafless passage in its middle (`portal`). A staircase opens no wider than 1.2 m."""
     best = max(between, key=lambda r: r.length, default=None)
     if best is None:
         return False
     clear = best.length - 2 * FRAME
-    width = clear if kind == "open" else min(clear, 1.6)
-    if any(requests[i].type == "staircase" for i in rooms):
-        width = min(width, 1.2)
+    width = min(clear if kind == "open" else min(clear, 1.6), 1.2 if stairs else np.inf)
     if width < 0.79:
         return False
-    offset = (best.length - width) / 2
-    label: OpeningKind = "open" if kind == "open" else "portal"
-    height = site.under(2.4 if kind == "open" else 2.2)
-    ids = (best.rooms[0], best.rooms[1])
-    site.put(best, Opening(_next_id(site, kind), label, ids, best.segment(offset, width), height, level=best.level), offset)
+    site.put(best, "open" if kind == "open" else "portal", (best.length - width) / 2, width, site.under(2.4 if kind == "open" else 2.2))
     return True
 
 
@@ -179,9 +173,7 @@ def _entrance(program: FloorProgram, site: Site, runs: Sequence[Run], rng: np.ra
             best = max(walls, key=lambda r: r.length, default=None)
             if best is None or best.length < GATE_WIDTH + 2 * FRAME:
                 return False
-            offset = (best.length - GATE_WIDTH) / 2
-            gate = Opening(_next_id(site, "door"), "door", (room.id,), best.segment(offset, GATE_WIDTH), site.under(2.1), level=best.level)
-            site.put(best, gate, offset)
+            site.put(best, "door", (best.length - GATE_WIDTH) / 2, GATE_WIDTH, site.under(2.1))
         elif room.id in own and room.id != into and not _door(site, walls, "door", width, room.id, DOOR_HEIGHT, rng):
             return False
     return True
@@ -203,24 +195,19 @@ def _door(site: Site, walls: Sequence[Run], kind: OpeningKind, width: float, int
             if not site.free(run, offset, width):
                 continue
             segment = run.segment(offset, width)
-            hinge = _near_corner(floor, segment, run.along)
+            hinge = _near_corner(floor, segment, run.vertical)
             for end in (hinge, 1 - hinge):
                 if _leaf_fits(site, floor, into, segment, end, inward, width, run.half):
-                    swing = Swing(into, end, ANGLE)
-                    site.put(
-                        run, Opening(_next_id(site, kind), kind, run.rooms, segment, site.under(height), 0.0, swing, run.level), offset
-                    )
+                    site.put(run, kind, offset, width, site.under(height), swing=Swing(into, end, ANGLE))
                     site.swept.append((into, leaf_sweep(segment, end, inward, width)))
                     return True
     return False
 
 
-def _near_corner(floor: shapely.Polygon, segment: Point, along: Point) -> int:
+def _near_corner(floor: shapely.Polygon, segment: Point, vertical: bool) -> int:
     """Return the end of the segment that lies nearer to a side wall of the room."""
-    x0, y0, x1, y1 = floor.bounds
-    low, high = np.array([x0, y0]) @ np.abs(along), np.array([x1, y1]) @ np.abs(along)
-    ends = segment @ np.abs(along)
-    return int(np.argmin([min(e - low, high - e) for e in ends]))
+    low, high = floor.bounds[vertical], floor.bounds[2 + vertical]
+    return int(np.argmin([min(end - low, high - end) for end in segment[:, int(vertical)]]))
 
 
 def _leaf_fits(site: Site, floor: shapely.Polygon, into: str, segment: Point, hinge: int, inward: Point, width: float, wall: float) -> bool:
@@ -232,12 +219,7 @@ def _leaf_fits(site: Site, floor: shapely.Polygon, into: str, segment: Point, hi
     if any(room == into and other.distance(sweep) < LEAF_GAP for room, other in site.swept):
         return False
     # no leaf may stand in another opening of the room
-    for opening in site.openings:
-        if into in opening.rooms:
-            line = shapely.LineString(opening.segment)
-            if line.distance(sweep) < LEAF_GAP:
-                return False
-    return True
+    return all(shapely.LineString(o.segment).distance(sweep) >= LEAF_GAP for o in site.openings if into in o.rooms)
 
 
 def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tuple[float, float]]) -> None:
@@ -266,10 +248,7 @@ def _windows(site: Site, room: RoomReq, walls: Sequence[Run], tries: Sequence[tu
                 sill, height = (HIGH_SILL, HIGH_WINDOW) if high else (SILL, site.ceiling if room.type == "balcony" else WINDOW_HEIGHT)
                 sill = min(sill, site.ceiling - LINTEL - LEAST_WINDOW)
                 height = site.under(sill + height) - sill
-                segment = run.segment(offset, size)
-                site.put(
-                    run, Opening(_next_id(site, "window"), "window", run.rooms, segment, round(height, 3), sill, None, run.level), offset
-                )
+                site.put(run, "window", offset, size, round(height, 3), sill)
                 placed, glass = placed + 1, glass + size * height
                 break
 

@@ -7,7 +7,7 @@ from shapely import Polygon
 from pipeline.entities.plan import Plan, Room, hops
 from pipeline.floorplan.program.defaults import OUTSIDE
 from pipeline.floorplan.program.floor_program import FloorProgram
-from pipeline.floorplan.realise import trace, wall_lines
+from pipeline.floorplan.realise import wall_lines
 from pipeline.floorplan.realise.chamfers import chamfer_corners
 from pipeline.floorplan.realise.openings import Run, place
 from pipeline.floorplan.search.grid import Halves, Labels
@@ -48,7 +48,7 @@ def _flights(storeys: list[tuple[Storey, Labels]]) -> list[bool]:
     by_storey: list[list[bool]] = []
     for request, grid in storeys if len(storeys) > 1 else []:
         room = next(i for i, r in enumerate(request.rooms) if r.type == "staircase")
-        by_storey.append(_inner_sides(grid, trace.outline(grid, room), len(request.rooms)))
+        by_storey.append(_inner_sides(grid, wall_lines.outline(grid, room), len(request.rooms)))
     return [any(sides) for sides in zip(*by_storey, strict=True)]
 
 
@@ -57,7 +57,7 @@ def _realise(
 ) -> None:
     """Append a storey's rooms and the stretches of wall that openings can stand in; lines move by `share` of what they may."""
     spec, n = request.spec, len(request.rooms)
-    corners = [trace.outline(grid, i) for i in range(n)]
+    corners = [wall_lines.outline(grid, i) for i in range(n)]
     sides = [flights if flights and r.type == "staircase" else _inner_sides(grid, corners[i], n) for i, r in enumerate(request.rooms)]
     lines = wall_lines.find(grid, UNIT)
     tight = np.array([r.type == "hallway" or r.min_width is not None for r in request.rooms])
@@ -72,12 +72,12 @@ def _realise(
     for i, room in enumerate(request.rooms):
         if room.type == "staircase" and request.level > 0:
             continue  # one room with its lowest level
-        polygon = np.round(at[wall_lines.corner_lines(lines, corners[i])] + trace.insets(corners[i], sides[i], spec.half), 3)
+        polygon = np.round(at[wall_lines.corner_lines(lines, corners[i])] + wall_lines.insets(corners[i], sides[i], spec.half), 3)
         rooms.append(Room(room.id, room.type, polygon, request.level, program.shell.ceiling, room.role, functions=room.functions))
-    runs += _runs(request, trace.walls(grid, n), rooms, lines, at)
+    runs += _runs(request, wall_lines.walls(grid, n), rooms, lines, at)
 
 
-def _across(corners: trace.Corners) -> float:
+def _across(corners: wall_lines.Corners) -> float:
     """Return the width of a rectangular outline [m]; any width of another: no line of it moves far enough to matter."""
     (x0, y0), (x1, y1) = np.min(corners, axis=0), np.max(corners, axis=0)
     return float(min(x1 - x0, y1 - y0)) * UNIT if len(corners) == 4 else np.inf
@@ -107,7 +107,7 @@ def _within(program: FloorProgram, storeys: list[tuple[Storey, Labels]], rooms: 
     return not wish.stated or (wish.min or 0.0) <= inside <= (wish.max or np.inf)
 
 
-def _inner_sides(grid: Labels, corners: trace.Corners, n: int) -> list[bool]:
+def _inner_sides(grid: Labels, corners: wall_lines.Corners, n: int) -> list[bool]:
     """Whether each side of a room's outline has another room behind any part of it."""
     sides = []
     for (x0, y0), (x1, y1) in zip(corners, [*corners[1:], corners[0]], strict=True):
@@ -121,7 +121,7 @@ def _inner_sides(grid: Labels, corners: trace.Corners, n: int) -> list[bool]:
     return sides
 
 
-def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room], lines: wall_lines.Lines, at: NDArray[np.float64]) -> list[Run]:
+def _runs(request: Storey, walls: list[wall_lines.Wall], rooms: list[Room], lines: wall_lines.Lines, at: NDArray[np.float64]) -> list[Run]:
     """Return the stretches of wall that openings can stand in: where both rooms' inner faces lie opposite each other."""
     by_id, half = {r.room_id: r for r in rooms}, request.spec.half
     runs: list[Run] = []
@@ -142,16 +142,13 @@ def _runs(request: Storey, walls: list[trace.Wall], rooms: list[Room], lines: wa
             line = spans[0][2] + (half.outer if wall.a_low else -half.outer)
         if end - start < 0.5:
             continue
-        point, along, inward = np.zeros(2), np.zeros(2), np.zeros(2)
-        point[1 - axis], point[axis] = line, start
-        along[axis] = 1.0
-        inward[1 - axis] = -1.0 if wall.a_low else 1.0
-        thick = half.inner if len(spans) == 2 else half.outer
-        runs.append(Run(names, np.round(point, 3), along, inward, round(end - start, 3), request.level, wall.vertical, thick))
+        way, thick = -1.0 if wall.a_low else 1.0, half.inner if len(spans) == 2 else half.outer
+        line, length = float(np.round(line, 3)), round(end - start, 3)
+        runs.append(Run(names, wall.vertical, line, float(np.round(start, 3)), length, way, request.level, thick))
     return runs
 
 
-def _crossing(lines: wall_lines.Lines, at: NDArray[np.float64], wall: trace.Wall, k: int) -> float:
+def _crossing(lines: wall_lines.Lines, at: NDArray[np.float64], wall: wall_lines.Wall, k: int) -> float:
     """Return the coordinate [m] at which a wall's stretch ends: that of the line that meets it there."""
     beside = lines.level[k] if wall.vertical else lines.upright[:, k]
     ids = [beside[i] for i in (wall.at - 1, wall.at) if 0 <= i < beside.size and beside[i] >= 0]

@@ -1,4 +1,4 @@
-"""Walls as movable lines: the grid's walls leave the raster by a few centimetres until the rooms have the areas asked for.
+"""Walls as they stand on the grid, and as movable lines: they leave the raster by a few centimetres until the rooms have the areas asked for.
 
 Every maximal connected straight wall is one line with one coordinate. A room's inner area is bilinear in the coordinates of its
 sides; a few bounded, regularised least-squares steps bring all areas near their targets while no wall crosses another.
@@ -9,15 +9,82 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.realise import trace
-from pipeline.floorplan.search.grid import Halves, Labels
+from pipeline.floorplan.search.grid import Floats, Halves, Ints, Labels
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Corners = list[tuple[int, int]]
 
 FARTHEST, AT_JOG = 0.10, 0.03  # how far lines may move [m]; beside a jog of one cell
 RIDGE = 0.02  # weight of moving one line by FARTHEST, against the squared relative error of one area
 ROUNDS = 3
+
+
+class Wall(NamedTuple):
+    """A straight stretch of wall between two rooms (`b` = -1: the outside), on the line `at` from `start` to `end` [cells].
+
+    `vertical`: the line is x = at, else y = at. `a` lies on the side of smaller coordinates if `a_low`.
+    """
+
+    a: int
+    b: int
+    vertical: bool
+    at: int
+    start: int
+    end: int
+    a_low: bool
+
+
+def outline(grid: Labels, room: int) -> Corners:
+    """Return the corners (x, y) [cells] of a simple room, counter-clockwise (y up), without collinear ones."""
+    first = int(np.argmax(grid == room))
+    y, x = divmod(first, grid.shape[1])
+    cells = grid.tolist()  # bordered indices: the cell spans (x-1, y-1) to (x, y)
+    start = (x - 1, y - 1)
+    y, dx, dy = y - 1, 1, 0  # at the end of its lower side
+    ring = [start]
+    while (x, y) != start:
+        # the cells ahead, to the left and to the right; the room lies to the left of the walk
+        right = cells[y + (dy + 1) // 2 + (dx < 0)][x + (dx + 1) // 2 + (dy > 0)] == room
+        left = cells[y + (dy + 1) // 2 + (dx > 0)][x + (dx + 1) // 2 + (dy < 0)] == room
+        if right or not left:
+            ring.append((x, y))
+            dx, dy = (dy, -dx) if right else (-dy, dx)
+        x, y = x + dx, y + dy
+    return ring
+
+
+def walls(grid: Labels, n: int) -> list[Wall]:
+    """Return every straight stretch of wall, in a fixed order; `a` is a room, `b` a room or -1 for the outside."""
+    segments: list[Wall] = []
+    body = grid[:, 1:-1], grid[1:-1, :].T
+    for vertical, cells in ((True, body[1]), (False, body[0])):
+        low, high = cells[:-1], cells[1:]
+        wall = low != high
+        on = wall[:, 1:] & (low[:, 1:] == low[:, :-1]) & (high[:, 1:] == high[:, :-1])  # goes on from the cell before
+        begins, ends = wall.copy(), wall.copy()
+        begins[:, 1:] &= ~on
+        ends[:, :-1] &= ~on
+        for (at, start), end in zip(np.argwhere(begins).tolist(), np.nonzero(ends)[1].tolist(), strict=True):
+            one, two = int(low[at, start]), int(high[at, start])
+            if max(one, two) < n:
+                segments.append(Wall(one, two, vertical, at, start, end + 1, True))
+            else:
+                segments.append(Wall(two if one == n else one, -1, vertical, at, start, end + 1, two == n))
+    return segments
+
+
+def insets(corners: Corners, inner_sides: list[bool], half: Halves) -> Floats:
+    """Return how far each corner of a room's inner faces lies from the walls' lines (k, 2) [m]: half a wall inward from both its sides.
+
+    `inner_sides[i]` tells whether side i (corner i to i+1) has a room behind any part of it.
+    """
+    result = np.zeros((len(corners), 2))
+    for i, (x, y) in enumerate(corners):
+        x1, y1 = corners[(i + 1) % len(corners)]
+        offset = half.inner if inner_sides[i] else half.outer
+        # the inside lies to the left of a counter-clockwise walk
+        axis, way = (1, 1.0 if x1 > x else -1.0) if y == y1 else (0, -1.0 if y1 > y else 1.0)
+        result[i, axis] = result[(i + 1) % len(corners), axis] = offset * way
+    return result
 
 
 class Lines(NamedTuple):
@@ -47,7 +114,7 @@ def _number(walls: NDArray[np.bool_], first: int) -> tuple[Ints, list[float]]:
     return np.ascontiguousarray(ids.T), np.nonzero(begins)[0].astype(float).tolist()
 
 
-def corner_lines(lines: Lines, corners: trace.Corners) -> Ints:
+def corner_lines(lines: Lines, corners: Corners) -> Ints:
     """Return for each corner (x, y) of an outline the numbers of the lines that fix it (count, 2)."""
     count = len(corners)
     ids = np.empty((count, 2), np.int64)
@@ -72,7 +139,7 @@ def outer(lines: Lines, grid: Labels, n: int) -> NDArray[np.bool_]:
 
 def fit(
     lines: Lines,
-    outlines: list[trace.Corners],
+    outlines: list[Corners],
     sides: list[list[bool]],
     target: Floats,
     trust: Floats,
@@ -121,13 +188,13 @@ class Shape(NamedTuple):
     flat: NDArray[np.bool_]  # (c,) whether the side from it runs along x
 
 
-def _shape(outlines: list[trace.Corners], ids: list[Ints], sides: list[list[bool]], half: Halves) -> Shape:
+def _shape(outlines: list[Corners], ids: list[Ints], sides: list[list[bool]], half: Halves) -> Shape:
     counts = np.array([len(c) for c in outlines])
     first = np.cumsum(counts) - counts
     after = np.arange(counts.sum()) + 1
     after[first + counts - 1] = first
     whole = np.vstack(ids)
-    inset = np.vstack([trace.insets(c, inner, half) for c, inner in zip(outlines, sides, strict=True)])
+    inset = np.vstack([insets(c, inner, half) for c, inner in zip(outlines, sides, strict=True)])
     return Shape(first, np.repeat(np.arange(counts.size), counts), after, whole, inset, whole[:, 1] == whole[after, 1])
 
 

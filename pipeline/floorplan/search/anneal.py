@@ -3,27 +3,14 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.floorplan.search.energy import Terms, terms, together, weighted_sum
-from pipeline.floorplan.search.grid import Labels, Measures, empty, measure
+from pipeline.floorplan.search.grid import Floats, Ints, Labels, Measures, empty, measure
 from pipeline.floorplan.search.spec import Spec, tree
 from pipeline.geometry.compiled import borrowing
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
 DRAWS = 8  # uniform numbers that one proposal takes
 LINE, PAIR, SIDE, PART, SWAP = 0.35, 0.60, 0.78, 0.97, 1.0  # cumulative shares of the moves
-
-
-class Schedule(NamedTuple):
-    """The heat at the start and at the end, the weight of a hard violation at the end, and how many proposals are evaluated at most."""
-
-    hot: float
-    cold: float
-    penalty: float
-    most: int
 
 
 class Scratch(NamedTuple):
@@ -134,8 +121,7 @@ def run(
     out = empty(n, start.shape[0] - 2, start.shape[1] - 2)
     scratch = Scratch(start.copy(), start.copy(), np.zeros(n), np.zeros((n, 4)), np.zeros((n, 4)), np.ones(n + 1, np.int64))
     best = start.copy()
-    schedule = Schedule(hot, cold, penalty, most)
-    return best, *anneal(best, spec, tree(spec.link, spec.root), out, scratch, weights, fixed, draws, schedule)
+    return best, *anneal(best, spec, tree(spec.link, spec.root), out, scratch, weights, fixed, draws, (hot, cold, penalty, most))
 
 
 @borrowing
@@ -157,11 +143,20 @@ def _copy_all(source: Labels, target: Labels) -> None:
 
 @borrowing
 def anneal(
-    best: Labels, spec: Spec, edges: Ints, out: Measures, scratch: Scratch, weights: Terms, fixed: Ints, draws: Floats, schedule: Schedule
+    best: Labels,
+    spec: Spec,
+    edges: Ints,
+    out: Measures,
+    scratch: Scratch,
+    weights: Terms,
+    fixed: Ints,
+    draws: Floats,
+    schedule: tuple[float, float, float, int],
 ) -> tuple[float, float, Terms, int, int]:
-    """Anneal from `best` until `most` proposals are evaluated or the draws are spent; leave the best plan there, and return its energy, hard violation (0: all hold), terms, moves accepted and evaluated.
+    """Anneal from `best` and leave the best plan there; return its energy, hard violation (0: all hold), terms, moves accepted and evaluated.
 
-    The violation's weight grows from a quarter of `penalty` to all of it; the best state is the one of least (violation, energy).
+    The schedule is the heat at the start and at the end, the weight of a hard violation at the end, and how many proposals are evaluated
+    at most. That weight grows from a quarter to all of it; the best state is the one of least (violation, energy).
     """
     hot, cold, penalty, most = schedule
     n = spec.target.size

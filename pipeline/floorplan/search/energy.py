@@ -9,51 +9,44 @@ except for `alignment`.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.floorplan.search.grid import Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
+from pipeline.floorplan.search.grid import (
+    Floats,
+    Ints,
+    Labels,
+    Measures,
+    ell_opening,
+    hull_area,
+    inner_area,
+    notch_width,
+    opening,
+    simple,
+)
 from pipeline.floorplan.search.spec import Spec
 from pipeline.geometry.compiled import borrowing
 
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
-
 
 class Terms(NamedTuple):
-    """A number for each term: its value in a plan, or its weight.
+    """A number for each term: its value in a plan, or its weight; the usual weights where none is given.
 
-    A new term is a function below, a line here, in WEIGHTS and in `terms`, and its knob in `program.floor_program.Style`.
+    A new term is a function below, a line here and in `terms`, and its knob in `program.floor_program.Style`.
     """
 
-    circulation: float
-    area: float
-    squareness: float
-    convexity: float
-    simplicity: float
-    exterior: float
-    corner_light: float
-    alignment: float
-    useful_area: float
-    min_width: float
-    stair_fit: float
-    stair_snug: float
+    circulation: float = 5.0
+    area: float = 24.0
+    squareness: float = 1.6
+    convexity: float = 40.0
+    simplicity: float = 2.4
+    exterior: float = 2.0
+    corner_light: float = 1.0
+    alignment: float = 0.5
+    useful_area: float = 10.0
+    min_width: float = 0.5
+    stair_fit: float = 12.0
+    stair_snug: float = 8.0
 
 
 TERMS = Terms._fields
-WEIGHTS = Terms(
-    circulation=5.0,
-    area=24.0,
-    squareness=1.6,
-    convexity=40.0,
-    simplicity=2.4,
-    exterior=2.0,
-    corner_light=1.0,
-    alignment=0.5,
-    useful_area=10.0,
-    min_width=0.5,
-    stair_fit=12.0,
-    stair_snug=8.0,
-)
 TONGUE = 0.76  # m between inner faces: no part of a room is narrower
 TOGETHER = 12.0  # weight of what belongs together, beside the twelve
 SLIM, STEEP = 2.2, 4.0  # ratio of sides from which on a room is a corridor, and how much more it costs then

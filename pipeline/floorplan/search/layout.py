@@ -2,14 +2,10 @@
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from pipeline.floorplan.search.energy import TOGETHER, Terms, share_error, stair_fit, stair_snug
+from pipeline.floorplan.search.energy import TOGETHER, Terms, overlap, share_error, stair_fit, stair_snug
+from pipeline.floorplan.search.grid import Floats, Ints
+from pipeline.floorplan.search.spec import Spec
 from pipeline.geometry.compiled import borrowing
-
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
 
 LONG = 1.8  # ratio of sides from which a room that should be square is penalised as a corridor
 
@@ -41,33 +37,22 @@ def _corners(rect: Ints, room: int, width: int, height: int, n: int) -> int:
 
 
 class Wishes(NamedTuple):
-    """What the layout of n rooms is scored by; names as in `Spec`, `square` are weights."""
+    """What the layout of n rooms is scored by, beside the storey's numbers."""
 
+    spec: Spec
     pairs: Ints  # (k, 4) the rooms of which something is asked together: both, and their rows of `need` and `ban`
     far: Floats  # (k,) their row of `apart`
-    outside: Ints
-    corner: Ints
-    least: Ints  # hard, and
-    wide: Ints  # wanted least width [cells]
-    square: Floats
-    stair: Ints
-    stair_room: int
-    flight: Ints
-    between: Ints
-    habitable: Ints
-    useful: Ints
+    square: Floats  # (n,) what sides cost that are unlike
     edges: Ints  # (k, 2) room and parent on the ways from the entrance, nearest first
-    near: Floats  # (k, 3) rooms a, b that belong together, and how much
     wanted: Floats  # (m,) areas up to wall centre lines [cells], and
     heed: Floats  # (n,) what missing them costs, for rooms whose area is flexible
     weights: Terms
-    unit: float  # side of a cell [m]
 
 
 @borrowing
 def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, travel: Floats) -> float:
     """Return the weighted terms that the topology decides, as `energy` has them: circulation, exterior, corner_light, useful_area."""
-    habitable, useful, edges, weights = wishes.habitable, wishes.useful, wishes.edges, wishes.weights
+    habitable, useful, edges, weights = wishes.spec.habitable, wishes.spec.useful, wishes.edges, wishes.weights
     m = rect.shape[0]
     lit, wall, corners, own, whole = 0, 0, 0, 0.0, 0.0
     for a in range(n):
@@ -170,8 +155,8 @@ def _of_pairs(total: float, rect: Ints, wishes: Wishes, diagonal: float, most: f
 @borrowing
 def _of_rooms(total: float, rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, most: float) -> float:
     """Add what rooms cost that are narrow, long, larger or smaller than wanted, or without the outside walls or the corner that they need."""
-    least, square, heed, wanted = wishes.least, wishes.square, wishes.heed, wishes.wanted
-    wide, narrow = wishes.wide, wishes.weights.min_width * wishes.unit * wishes.unit
+    spec, square, heed, wanted = wishes.spec, wishes.square, wishes.heed, wishes.wanted
+    least, wide, narrow = spec.strict, spec.least, wishes.weights.min_width * spec.unit * spec.unit
     for a in range(n):
         w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
         short, long = min(w, h), max(w, h)
@@ -188,11 +173,11 @@ def _of_rooms(total: float, rect: Ints, width: int, height: int, n: int, gross: 
         if heed[a] > 0.0:
             off = gross[a] / wanted[a]
             total += heed[a] * (max(off, 1.0 / off) - 1.0)
-        if wishes.outside[a] > 0:
+        if spec.outside[a] > 0:
             best = _outside(rect, a, width, height, n)
-            if best < wishes.outside[a]:
-                total += 8.0 + 7.0 * (wishes.outside[a] - best) / wishes.outside[a]
-        if wishes.corner[a] > 0 and _corners(rect, a, width, height, n) == 0:
+            if best < spec.outside[a]:
+                total += 8.0 + 7.0 * (spec.outside[a] - best) / spec.outside[a]
+        if spec.corner[a] > 0 and _corners(rect, a, width, height, n) == 0:
             total += 12.0
         if total > most:
             break
@@ -216,8 +201,9 @@ def _outside(rect: Ints, a: int, width: int, height: int, n: int) -> int:
 @borrowing
 def _of_order(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> float:
     """Add what rooms cost that are not between the two between which they are asked."""
-    for k in range(wishes.between.shape[0]):
-        a, b, c = wishes.between[k, 0], wishes.between[k, 1], wishes.between[k, 2]
+    between = wishes.spec.between
+    for k in range(between.shape[0]):
+        a, b, c = between[k, 0], between[k, 1], between[k, 2]
         ahead = 0.0
         for axis in range(2):
             middle = rect[a, axis] + rect[a, axis + 2]
@@ -245,18 +231,19 @@ def _of_voids(total: float, rect: Ints, width: int, height: int, n: int) -> floa
 @borrowing
 def _of_nearness(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> float:
     """Add the distances of rooms that belong together."""
-    for k in range(wishes.near.shape[0]):
-        a, b = int(wishes.near[k, 0]), int(wishes.near[k, 1])
+    near = wishes.spec.near
+    for k in range(near.shape[0]):
+        a, b = int(near[k, 0]), int(near[k, 1])
         dx = 0.5 * (rect[a, 0] + rect[a, 2] - rect[b, 0] - rect[b, 2])
         dy = 0.5 * (rect[a, 1] + rect[a, 3] - rect[b, 1] - rect[b, 3])
-        total += TOGETHER * wishes.near[k, 2] * (dx * dx + dy * dy) ** 0.5 / diagonal
+        total += TOGETHER * near[k, 2] * (dx * dx + dy * dy) ** 0.5 / diagonal
     return total
 
 
 @borrowing
 def _of_stairs(total: float, rect: Ints, n: int, wishes: Wishes, diagonal: float) -> float:
     """Add what the staircase costs: off its place on the other storey, or too small for its flights."""
-    stair, stair_room, flight, weights = wishes.stair, wishes.stair_room, wishes.flight, wishes.weights
+    stair, stair_room, flight, weights = wishes.spec.stair, wishes.spec.stair_room, wishes.spec.flight, wishes.weights
     if stair_room >= 0:
         w = min(rect[stair_room, 2], stair[2]) - max(rect[stair_room, 0], stair[0])
         h = min(rect[stair_room, 3], stair[3]) - max(rect[stair_room, 1], stair[1])
@@ -267,7 +254,7 @@ def _of_stairs(total: float, rect: Ints, n: int, wishes: Wishes, diagonal: float
         total += n * (2.0 * stair_fit(both, whole) + stair_snug(both, whole, own)) + 12.0 * gap / diagonal
     elif flight[0] >= 0:
         w, h = rect[flight[0], 2] - rect[flight[0], 0], rect[flight[0], 3] - rect[flight[0], 1]
-        both = float(min(max(w, h), flight[1]) * min(w, h, flight[2]))
+        both = overlap(w, h, flight[1], flight[2])
         whole = float(flight[1] * flight[2])
         total += n * (weights.stair_fit * stair_fit(both, whole) + weights.stair_snug * stair_snug(both, whole, float(w * h)))
     return total

@@ -8,16 +8,13 @@ Units: cells of the grid.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.floorplan.search.grid import Floats, Ints
 from pipeline.floorplan.search.layout import Wishes, cost
 from pipeline.geometry.compiled import borrowing
 
 V, H = -2, -3
 DRAWS = 4  # uniform numbers that one proposal takes
-
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
 
 
 @borrowing
@@ -129,28 +126,8 @@ class Scratch(NamedTuple):
     travel: Floats  # (n, 4) as `leaning` wants it
 
 
-def search(
-    expr: Ints,
-    draws: Floats,
-    hot: float,
-    cold: float,
-    width: int,
-    height: int,
-    n: int,
-    gross: Floats,
-    low: Floats,
-    high: Floats,
-    wishes: Wishes,
-) -> tuple[Ints, float]:
-    """Anneal the tree and the areas of flexible rooms (between `low` and `high`); return the best rectangles and their cost."""
-    m = gross.size
-    best, nodes = np.zeros((m, 4), np.int64), np.zeros((2 * m - 1, 7), np.int64)
-    scratch = Scratch(expr.copy(), gross.copy(), np.zeros((m, 4), np.int64), nodes, np.zeros(2 * m - 1), np.zeros((n, 4)))
-    return best, _search(expr, draws, (hot, cold), (width, height), n, (low, high), wishes, scratch, best)
-
-
 @borrowing
-def _search(  # noqa: PLR0912 - compiled: loops instead of slices compile faster
+def search(  # noqa: PLR0912 - compiled: loops instead of slices compile faster
     expr: Ints,
     draws: Floats,
     heats: tuple[float, float],
@@ -161,7 +138,10 @@ def _search(  # noqa: PLR0912 - compiled: loops instead of slices compile faster
     scratch: Scratch,
     best_rect: Ints,
 ) -> float:
-    """Write the best rectangles to `best_rect` (m, 4) and return their cost; `expr` ends as the last tree."""
+    """Anneal the tree and the areas of flexible rooms, between both bounds; write the best rectangles (m, 4) and return their cost.
+
+    `expr` ends as the last tree.
+    """
     hot, cold = heats
     width, height = outline
     low, high = bounds

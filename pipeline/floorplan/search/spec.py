@@ -3,12 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.floorplan.search.grid import Halves
-
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
+from pipeline.floorplan.search.grid import Floats, Halves, Ints
 
 
 class Spec(NamedTuple):
@@ -47,21 +43,10 @@ class Spec(NamedTuple):
 
 def tree(link: Ints, root: int) -> Ints:
     """Return rows (room, parent) of the breadth-first tree of links from `root`, the root left out."""
-    n = link.shape[0]
-    edges = np.full((max(n - 1, 0), 2), -1, np.int64)
-    queue = np.empty(n, np.int64)
-    visited = np.zeros(n, np.int64)
-    queue[0] = root
-    visited[root] = 1
-    head, tail, size = 0, 1, 0
-    while head < tail:
-        a = queue[head]
-        head += 1
-        for b in range(n):
-            if link[a, b] > 0 and visited[b] == 0:
-                visited[b] = 1
-                edges[size, 0], edges[size, 1] = b, a
-                size += 1
-                queue[tail] = b
-                tail += 1
-    return edges[:size]
+    parents, order = {root: root}, [root]
+    for here in order:
+        for other in np.flatnonzero(link[here]).tolist():
+            if other not in parents:
+                parents[other] = here
+                order.append(other)
+    return np.array([(room, parents[room]) for room in order[1:]], np.int64).reshape(-1, 2)

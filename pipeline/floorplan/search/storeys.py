@@ -3,16 +3,15 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.floorplan.program.daylight import YIELDS, daylit
 from pipeline.floorplan.program.defaults import DEFAULTS, OUTSIDE
 from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
-from pipeline.floorplan.search.energy import TERMS, WEIGHTS, Terms
-from pipeline.floorplan.search.grid import Halves
+from pipeline.floorplan.search.energy import TERMS, Terms
+from pipeline.floorplan.search.grid import Floats, Halves, Ints
 from pipeline.floorplan.search.spec import Spec
 
 UNIT = 0.25  # side of a cell [m]
@@ -40,10 +39,10 @@ class Storey:
     rooms: tuple[RoomReq, ...]
     spec: Spec
     weights: Terms
-    gross: NDArray[np.float64]
-    gross_low: NDArray[np.float64]
-    gross_high: NDArray[np.float64]
-    clear: NDArray[np.float64]  # (n,) width between the middles of walls that corridors, and rooms of a stated width, must keep [m]
+    gross: Floats
+    gross_low: Floats
+    gross_high: Floats
+    clear: Floats  # (n,) width between the middles of walls that corridors, and rooms of a stated width, must keep [m]
 
 
 def cells(metres: float) -> int:
@@ -74,7 +73,7 @@ def wall_for(kind: str, door: float, small: bool, beside: float) -> int:
 
 def weights_of(program: FloorProgram, factor: float = 1.0) -> Terms:
     """Return the weights: defaults times two to the power of the knobs, and a factor on all."""
-    return Terms(*(getattr(WEIGHTS, name) * 2.0 ** getattr(program.style, name) * factor for name in TERMS))
+    return Terms(*(getattr(Terms(), name) * 2.0 ** getattr(program.style, name) * factor for name in TERMS))
 
 
 def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, int] | None = None, ease: int = 0) -> Storey:
@@ -85,6 +84,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     """
     rooms = tuple(r for r in program.rooms if r.level == level or (r.type == "staircase" and level < program.storeys))
     index = {r.id: i for i, r in enumerate(rooms)}
+    stairs = next((i for i, r in enumerate(rooms) if r.type == "staircase"), -1)
     target = np.array([r.area.target or DEFAULTS[r.type].area for r in rooms])
     low, high = _bounds(rooms, target, ease)
     half = halves(program)
@@ -96,10 +96,12 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     # a small room cannot be as wide as its type usually is
     least = np.array([cells(min(w, 0.92 * t**0.5 + 2 * half.inner)) for w, t in zip(clear, target, strict=True)])
     strict = _strict_widths(rooms, least, half, ease)
-    corridor = np.array([int(r.type == "hallway") for r in rooms])
+    square, habitable, useful = (
+        np.array([int(getattr(DEFAULTS[r.type], name)) for r in rooms]) for name in ("square", "habitable", "useful")
+    )
     spec = Spec(
         UNIT,
-        _root(program, rooms, index),
+        index.get(program.entrance.into or "", max(stairs, 0)),
         target,
         low,
         high,
@@ -107,10 +109,10 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         np.array([int(r.type not in OUTSIDE) for r in rooms]),
         least,
         strict,
-        np.array([int(DEFAULTS[r.type].square) for r in rooms]),
-        np.array([int(DEFAULTS[r.type].habitable) for r in rooms]),
-        np.array([int(DEFAULTS[r.type].useful) for r in rooms]),
-        corridor,
+        square,
+        habitable,
+        useful,
+        np.array([int(r.type == "hallway") for r in rooms]),
         link,
         need,
         ban,
@@ -119,12 +121,12 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         np.array([int(r.exterior == "corner") for r in rooms]),
         apart,
         order,
-        index[_stairs(rooms)] if stair_cells is not None else -1,
+        stairs if stair_cells is not None else -1,
         np.array(stair_cells or (0, 0, 0, 0)),
         program.nonrect if level == 0 else 0,
         half,
         np.array([HALL_HEED if r.type in {"hallway", "entry"} and not r.area.stated else 1.0 for r in rooms]),
-        np.array([index[_stairs(rooms)], *(cells(s + 2 * half.inner) for s in FLIGHTS)] if program.storeys > 1 else [-1, 0, 0]),
+        np.array([stairs, *(cells(s + 2 * half.inner) for s in FLIGHTS)] if program.storeys > 1 else [-1, 0, 0]),
         _between(here, index),
         _near(here, index),
     )
@@ -136,7 +138,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     return Storey(level, rooms, spec, weights_of(program, SOFTER[min(ease, len(SOFTER) - 1)]), gross, gross_low, gross_high, clear)
 
 
-def _total(program: FloorProgram) -> NDArray[np.float64]:
+def _total(program: FloorProgram) -> Floats:
     """Return the bounds of the home's area [m2], where it is stated and on one storey."""
     wish = program.total_area
     if program.storeys > 1 or not wish.stated:
@@ -144,7 +146,7 @@ def _total(program: FloorProgram) -> NDArray[np.float64]:
     return np.array([(wish.min or 0.0) * (1 + EDGE), (wish.max or np.inf) * (1 - EDGE)])
 
 
-def _links(program: FloorProgram, index: Mapping[str, int], target: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _links(program: FloorProgram, index: Mapping[str, int], target: Floats) -> tuple[Ints, Ints]:
     """Return which rooms open to each other, and the straight wall that each pair is to share [cells], both (n, n)."""
     n, door = len(index), program.accessibility.min_door
     link, need = np.zeros((n, n), np.int64), np.zeros((n, n), np.int64)
@@ -157,7 +159,7 @@ def _links(program: FloorProgram, index: Mapping[str, int], target: NDArray[np.f
     return link, need
 
 
-def _strict_widths(rooms: Sequence[RoomReq], least: NDArray[np.int64], half: Halves, ease: int) -> NDArray[np.int64]:
+def _strict_widths(rooms: Sequence[RoomReq], least: Ints, half: Halves, ease: int) -> Ints:
     """Return the widths below which no room may fall [cells]: less than the usual least ones, where nobody stated them."""
     narrowest = cells(NARROWEST + 2 * half.inner)
     strict = np.maximum((0.8 * least).astype(np.int64), np.minimum(least, narrowest))
@@ -203,13 +205,13 @@ def stretch_storeys(program: FloorProgram) -> FloorProgram:
     return program.model_copy(update={"rooms": tuple(rooms)})
 
 
-def _gross(target: NDArray[np.float64], half: Halves) -> NDArray[np.float64]:
+def _gross(target: Floats, half: Halves) -> Floats:
     """Area up to wall centre lines [cells] of a room of that inner area, were it nearly square."""
     side = np.sqrt(target) + 2 * (0.65 * half.inner + 0.35 * half.outer)
     return np.asarray(side * side / UNIT**2)
 
 
-def _bounds(rooms: tuple[RoomReq, ...], target: NDArray[np.float64], ease: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _bounds(rooms: tuple[RoomReq, ...], target: Floats, ease: int) -> tuple[Floats, Floats]:
     loose, most = (EASED, EASED_HALL) if ease else (LOOSE + STRIP / np.sqrt(target), FREE_HALL[1])
     low, high = target * (1 - loose), target * (1 + loose)
     for i, r in enumerate(rooms):
@@ -264,7 +266,7 @@ def _asked_outside(room: RoomReq, program: FloorProgram, level: int) -> int:
     return 0
 
 
-def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[Ints, Floats, Floats]:
     n = len(index)
     ban, apart, order = np.zeros((n, n), np.int64), np.zeros((n, n)), np.zeros((n, n))
 
@@ -290,32 +292,15 @@ def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[NDArray[np
     return ban, apart, order
 
 
-def _between(program: FloorProgram, index: dict[str, int]) -> NDArray[np.int64]:
+def _between(program: FloorProgram, index: dict[str, int]) -> Ints:
     """Return rows (a, b, c) of rooms of which a lies between b and c."""
-    triples = [
-        (index[a.id], index[b.id], index[c.id])
-        for r in program.relations
-        if r.kind == "between" and r.b and r.c
-        for a in program.select(r.a)
-        for b in program.select(r.b)
-        for c in program.select(r.c)
-        if len({a.id, b.id, c.id}) == 3
-    ]
+    asked = [[program.select(x) for x in (r.a, r.b, r.c)] for r in program.relations if r.kind == "between" and r.b and r.c]
+    triples = [[index[r.id] for r in rooms] for sides in asked for rooms in product(*sides) if len({r.id for r in rooms}) == 3]
     return np.array(triples, np.int64).reshape(-1, 3)
 
 
-def _near(program: FloorProgram, index: dict[str, int]) -> NDArray[np.float64]:
+def _near(program: FloorProgram, index: dict[str, int]) -> Floats:
     """Return rows (a, b, share) of rooms that belong together: members of a zone; shares of each sum to 1."""
     groups = [list(combinations(sorted({index[r.id] for m in z.members for r in program.select(m)}), 2)) for z in program.zones]
     pairs = [(a, b, 1.0 / len(group)) for group in groups for a, b in group]
     return np.array(pairs, np.float64).reshape(-1, 3)
-
-
-def _stairs(rooms: tuple[RoomReq, ...]) -> str:
-    return next(r.id for r in rooms if r.type == "staircase")
-
-
-def _root(program: FloorProgram, rooms: tuple[RoomReq, ...], index: dict[str, int]) -> int:
-    if program.entrance.into in index and index:
-        return index[program.entrance.into or ""]
-    return next((i for i, r in enumerate(rooms) if r.type == "staircase"), 0)

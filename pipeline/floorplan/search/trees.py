@@ -4,14 +4,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.search import slicing
-from pipeline.floorplan.search.grid import Labels
+from pipeline.floorplan.search.grid import Ints, Labels
 from pipeline.floorplan.search.layout import Wishes
 from pipeline.floorplan.search.spec import tree
-from pipeline.floorplan.search.stairwell import stamp
 from pipeline.floorplan.search.storeys import Storey
 
 SLICES = 1000  # slicing proposals per room and tree
@@ -56,11 +54,9 @@ class Trees:
         flexible = request.weights.area * 4.0 / n * spec.heed * (request.gross_high > request.gross_low)
         pairs = np.argwhere(np.triu((spec.need > 0) | (spec.ban > 0) | (spec.apart > 0), 1))
         one, other = pairs.T
-        self.wishes = Wishes(
-            np.ascontiguousarray(np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]])), spec.apart[one, other], spec.outside,
-            spec.corner, spec.strict, spec.least, square, spec.stair, spec.stair_room, spec.flight, spec.between, spec.habitable, spec.useful, tree(spec.link, spec.root), spec.near,
-            self.gross, flexible, request.weights, spec.unit,
-        )  # fmt: skip
+        numbers = np.ascontiguousarray(np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]]))
+        edges = tree(spec.link, spec.root)
+        self.wishes = Wishes(spec, numbers, spec.apart[one, other], square, edges, self.gross, flexible, request.weights)
 
     def grow(self, rng: np.random.Generator, length: int, effort: Effort) -> tuple[Labels, float]:
         """Anneal one slicing tree; return its bordered grid and cost (infinite when a cut-out is misplaced)."""
@@ -72,7 +68,10 @@ class Trees:
         draws = rng.random((SLICES * m * length, slicing.DRAWS))
         effort.slicings += 1
         effort.sliced += draws.shape[0]
-        rects, cost = slicing.search(expr, draws, SLICE_HOT, SLICE_COLD, width, height, n, self.gross, self.low, self.high, self.wishes)
+        rects, leaves, nodes = np.zeros((m, 4), np.int64), np.zeros((m, 4), np.int64), np.zeros((2 * m - 1, 7), np.int64)
+        scratch = slicing.Scratch(expr.copy(), self.gross.copy(), leaves, nodes, np.zeros(2 * m - 1), np.zeros((n, 4)))
+        heats, bounds = (SLICE_HOT, SLICE_COLD), (self.low, self.high)
+        cost = slicing.search(expr, draws, heats, (width, height), n, bounds, self.wishes, scratch, rects)
         grid = np.full((height + 2, width + 2), n, np.int16)
         for i, (x0, y0, x1, y1) in enumerate(rects.tolist()):
             grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = min(i, n)
@@ -88,9 +87,34 @@ class Trees:
         return grid, float(cost)
 
 
-def _same_side(cut: NDArray[np.int64]) -> bool:
+def _same_side(cut: Ints) -> bool:
     """Whether two cut-outs lie in different corners of one side, with building between them."""
     (ax0, ay0, ax1, ay1), (bx0, by0, bx1, by1) = cut.tolist()
     across = max(ax0, bx0) - min(ax1, bx1) >= LEAST_CUT and (ay0 == 0) == (by0 == 0)
     along = max(ay0, by0) - min(ay1, by1) >= LEAST_CUT and (ax0 == 0) == (bx0 == 0)
     return bool(across or along)
+
+
+def rectangle(grid: Labels, room: int) -> tuple[int, int, int, int] | None:
+    """Return a room's rectangle (x0, y0, x1, y1) [cells], or None when it is none."""
+    ys, xs = np.nonzero(grid[1:-1, 1:-1] == room)
+    box = (int(xs.min()), int(ys.min()), int(xs.max()) + 1, int(ys.max()) + 1)
+    return box if xs.size == (box[2] - box[0]) * (box[3] - box[1]) else None
+
+
+def stamp(grid: Labels, room: int, stair: tuple[int, ...], n: int) -> None:
+    """Put the staircase where it stands on the other storeys; what it leaves goes to the rooms beside it, cell by cell."""
+    x0, y0, x1, y1 = stair
+    left = grid == room
+    grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = room
+    left[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = False
+    while left.any():
+        before = int(left.sum())
+        for y, x in np.argwhere(left).tolist():
+            beside = [int(grid[y + dy, x + dx]) for dy, dx in ((0, 1), (0, -1), (1, 0), (-1, 0)) if not left[y + dy, x + dx]]
+            beside = [b for b in beside if b not in {n, room}]
+            if beside:
+                grid[y, x], left[y, x] = beside[0], False
+        if int(left.sum()) == before:
+            grid[left] = n
+            return
