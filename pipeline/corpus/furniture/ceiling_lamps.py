@@ -1,19 +1,16 @@
 """Pendant and ceiling lamps. The origin is the bottom of the box, as of all objects. Lengths in metres."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from pipeline.corpus.furniture.bent import curve, tube, turns
-from pipeline.corpus.furniture.finishes import GLOW, Scheme, pick
+from pipeline.corpus.furniture.finishes import Scheme, pick
 from pipeline.corpus.furniture.intervals import around, polar
-from pipeline.corpus.furniture.lamps import turned_along
-from pipeline.corpus.furniture.shades import bulb, cord, rose, shade, shade_word
+from pipeline.corpus.furniture.lamps import bulb, cord, rose, shade, shade_word, turned_along
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, ring, rod, slab
 
-CRYSTAL = replace(GLOW, name="crystal", color=(0.82, 0.86, 0.88), roughness=0.05, opacity=0.55, density=2500)
 THIN = 0.0035  # radius of a cord
 
 
@@ -47,7 +44,7 @@ def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     if rng.random() < 0.35:  # one long beam of light
         deep = min(0.05, 0.4 * d)
         parts += pieces("beam", box(around(w / 2), around(d / 2 if d < 0.12 else deep), (0.02, 0.075), 0.006), metal)
-        parts += pieces("light", box(around(0.49 * w), around(0.8 * deep), (0.0, 0.02), 0.003), GLOW)
+        parts += pieces("light", box(around(0.49 * w), around(0.8 * deep), (0.0, 0.02), 0.003), "glow")
         return parts + pieces("cord", [rod((s * 0.28 * w, 0, 0.075), (s * 0.28 * w, 0, h - 0.024), THIN, n=6) for s in (-1, 1)], metal)
     z = min(0.24, 0.36 * h)
     parts += pieces("bar", rod((-0.49 * w, 0, z + 0.05), (0.49 * w, 0, z + 0.05), 0.011, n=10), metal)
@@ -97,7 +94,7 @@ def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
         if crystal:
             parts += pieces("candle", rod((x, y, z + 0.016), (x, y, z + 0.09), 0.011, n=8), scheme.front) + bulb(z + 0.09, 0.045, (x, y))
             drop = [(0.002, 0.02 * body), (0.014, 0.09 * body), (0.004, 0.19 * body)]
-            parts += pieces("drops", revolve(drop, 6, (0.8 * r * math.cos(a), 0.8 * r * math.sin(a))), CRYSTAL)
+            parts += pieces("drops", revolve(drop, 6, (0.8 * r * math.cos(a), 0.8 * r * math.sin(a))), "crystal")
         else:
             parts += shade(rng, scheme, "bell", 0.175 * r, (z + 0.03, z + 0.03 + 0.3 * r), (x, y), 12)
             parts += pieces("candle", rod((x, y, z + 0.016), (x, y, z + 0.03 + 0.26 * r), 0.008, n=6), metal)
@@ -119,7 +116,7 @@ def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
         out = np.array([x * (w / 2 - r), y * (d / 2 - r), up * (z - r)])
         unit = out / np.linalg.norm(out)
         parts += pieces("rods", rod(middle + 0.85 * r * unit, middle + out - 0.9 * r * unit, 0.005, n=6), scheme.handle)
-        parts += pieces("globes", [s.moved(middle + out) for s in globe], GLOW)
+        parts += pieces("globes", [s.moved(middle + out) for s in globe], "glow")
     return parts + _hung(z + 0.8 * r, h, scheme)
 
 
@@ -134,7 +131,7 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     if form == "spots":
         return Shape(_spots(rng, size, scheme))
     if form == "ring":
-        parts = pieces("ring", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32, squash=squash), GLOW)
+        parts = pieces("ring", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32, squash=squash), "glow")
         parts += pieces("hoop", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0.4 * h, 0.6 * h), 32, squash=squash), metal)
         bars = [box(around(0.42 * w), (-0.012, 0.012), (0.6 * h, 0.72 * h)), box((-0.012, 0.012), around(0.42 * d), (0.72 * h, 0.84 * h))]
         return Shape(parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
@@ -146,7 +143,7 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     else:
         mount = [box(around(w / 2), around(d / 2), (0.45 * h, h), 0.004)]
         diffuser = [cushion(around(0.47 * w), around(0.47 * d), (0, 0.45 * h), min(0.03, 0.2 * h), 2)]
-    return Shape(pieces("mount", mount, finish) + pieces("diffuser", diffuser, GLOW))
+    return Shape(pieces("mount", mount, finish) + pieces("diffuser", diffuser, "glow"))
 
 
 def _spots(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
@@ -178,7 +175,7 @@ def _rain(form: str, size: Size, scheme: Scheme) -> Pieces:
         for a in turns(max(10, int(22 * (1 - 0.3 * k))), 0.1 * k):
             x, y = polar(r / max(abs(math.cos(a)), abs(math.sin(a))) if edged else r, a)
             rods.append(rod((x, y * d / w, low), (x, y * d / w, h - 0.03), 0.007, n=5))
-        parts += pieces("drops", rods, CRYSTAL if form == "crystal" else GLOW)
+        parts += pieces("drops", rods, "crystal" if form == "crystal" else "glow")
     return parts
 
 
@@ -193,4 +190,4 @@ def _lattice(size: Size, scheme: Scheme) -> Pieces:
     bars = [box(around(0.006, a), inner_y, (0.011, 0.02)) for a in np.linspace(*inner_x, 5)[1:-1]]
     bars += [box(inner_x, around(0.006, b), (0.002, 0.011)) for b in np.linspace(*inner_y, 5)[1:-1]]
     light = box(inner_x, inner_y, (0.02, h - 0.01))
-    return pieces("frame", frame, scheme.timber) + pieces("light", light, GLOW) + pieces("lattice", bars, scheme.timber)
+    return pieces("frame", frame, scheme.timber) + pieces("light", light, "glow") + pieces("lattice", bars, scheme.timber)

@@ -7,13 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
-from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, SOIL, Finish, Scheme, one_of, shade
+from pipeline.corpus.furniture.finishes import FINISHES, Finish, Scheme, one_of, shade
 from pipeline.corpus.furniture.intervals import Spot, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
 
 GOLDEN = math.pi * (3 - math.sqrt(5))
-BARK = Finish("bark", (0.16, 0.10, 0.055), 0.9, pattern="speckle", density=500)
 
 
 POTS = (  # profiles of (radius, height), in shares
@@ -31,15 +30,13 @@ def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     pot_r = min(0.3 * min(w, d), 0.2)
     pot, crown = _pot(rng, pot_r, min(0.34 * h, 0.36, 1.9 * pot_r), scheme)
     grow = {"bush": _bush, "palm": _palm, "monstera": _monstera, "fig": _fig, "olive": _olive}[form]
-    green = Finish("leaf", shade(rng, LEAF.color, 0.28), 0.55, pattern="leaf", density=300)
+    green = Finish("leaf", shade(rng, FINISHES["leaf"].color, 0.28), 0.55, pattern="leaf", density=300)
     return Shape(pot + grow(rng, Growth((w / 2, d / 2), crown, h, pot_r, green)))
 
 
 def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[Pieces, float]:
     """Return a pot with soil, and the height of the soil: tapered, cylindrical, bellied, a box, or a planter on legs."""
-    clay = Finish("clay", (0.42, 0.17, 0.09), 0.8, density=1800)
-    concrete = Finish("concrete_pot", (0.34, 0.34, 0.33), 0.8, pattern="concrete", density=2000)
-    finish = one_of(rng, (CERAMIC, clay, scheme.front, concrete))
+    finish = one_of(rng, ("ceramic", "clay", scheme.front, "concrete_pot"))
     kind = int(rng.integers(4))
     lift = 0.0
     parts: Pieces = ()
@@ -57,7 +54,7 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
     parts += pieces("pot_floor", slab(circle(profile[0][0], 22), (lift, lift + 0.014)), finish)
     crown = lift + 0.9 * (h - lift)
     inner = float(np.interp(crown, [z for _, z in profile], [a for a, _ in profile])) - 0.0135
-    return parts + pieces("soil", slab(circle(inner, 18), (crown - 0.02, crown)), SOIL), crown
+    return parts + pieces("soil", slab(circle(inner, 18), (crown - 0.02, crown)), "soil"), crown
 
 
 class Growth:
@@ -101,7 +98,7 @@ def _bush(rng: np.random.Generator, g: Growth) -> Pieces:
         for j, q in enumerate(np.linspace(0.3, 1.0, 7)):
             p = np.array([np.interp(q * (len(path) - 1), np.arange(len(path)), path[:, c]) for c in range(3)])
             g.leaf(p, p + np.array(polar(reach, a + j * 2.2, 0.35 * reach * float(rng.uniform(0.2, 1.2)))))
-    return g.parts("stems", BARK, 0.10 * g.small + 0.026)
+    return g.parts("stems", "bark", 0.10 * g.small + 0.026)
 
 
 def _palm(rng: np.random.Generator, g: Growth) -> Pieces:
@@ -161,7 +158,7 @@ def _fig(rng: np.random.Generator, g: Growth) -> Pieces:
         reach = (0.95 - 0.55 * share) if share > 0.15 else 0.75
         p = np.array([*(np.interp(z, trunk[:, 2], trunk[:, j]) for j in range(2)), z])
         g.leaf(p + polar(0.012, a, 0.0), g.out(a, reach, min(g.h, z + 0.16 + 0.12 * share * (g.h - g.crown))))
-    return g.parts("trunk", BARK, 0.36 * g.small + 0.03, belly=0.62)
+    return g.parts("trunk", "bark", 0.36 * g.small + 0.03, belly=0.62)
 
 
 def _olive(rng: np.random.Generator, g: Growth) -> Pieces:
@@ -180,4 +177,4 @@ def _olive(rng: np.random.Generator, g: Growth) -> Pieces:
             for m in range(2):
                 g.leaf(p, p + reach * np.array(polar(1.0, a + j * 1.9 + m * math.pi, float(rng.uniform(-0.2, 0.5)))))
     grey = Finish("olive_leaf", shade(rng, (0.16, 0.22, 0.12), 0.15), 0.6, pattern="leaf", density=300)
-    return g.parts("trunk", BARK, 0.02 + 0.03 * g.small, grey, n=4)
+    return g.parts("trunk", "bark", 0.02 + 0.03 * g.small, grey, n=4)

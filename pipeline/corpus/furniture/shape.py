@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.finishes import FINISHES, Finish, Material
 from pipeline.corpus.furniture.solids import Solid, Vector, box, hull
 
 Size = Sequence[float]  # (w, d, h) [m]
@@ -78,11 +78,10 @@ class Shape:
         return np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
 
 
-def pieces(name: str, solids: Solid | Iterable[Solid], finish: Finish, part: str = "", group: str = "") -> Pieces:
+def pieces(name: str, solids: Solid | Iterable[Solid], material: Material, part: str = "", group: str = "") -> Pieces:
     """Return the pieces of one component."""
-    if isinstance(solids, Solid):
-        return (Piece(name, solids, finish, part, group),)
-    return tuple(Piece(name, solid, finish, part, group) for solid in solids)
+    finish = FINISHES[material] if isinstance(material, str) else material
+    return tuple(Piece(name, solid, finish, part, group) for solid in ((solids,) if isinstance(solids, Solid) else solids))
 
 
 def group_pieces(parts: Iterable[Piece], group: str) -> Pieces:
@@ -90,9 +89,9 @@ def group_pieces(parts: Iterable[Piece], group: str) -> Pieces:
     return tuple(replace(piece, group=group) for piece in parts)
 
 
-def staves(name: str, solids: Sequence[Solid], finish: Finish) -> Pieces:
+def staves(name: str, solids: Iterable[Solid], material: Material) -> Pieces:
     """Return the staves of a round wall, three neighbours of which collide as one: finer to see than to touch."""
-    return tuple(Piece(name, solid, finish, group=f"{name}_{k // 3}") for k, solid in enumerate(solids))
+    return tuple(replace(piece, group=f"{name}_{k // 3}") for k, piece in enumerate(pieces(name, solids, material)))
 
 
 def colliders(parts: Iterable[Piece]) -> list[Solid]:

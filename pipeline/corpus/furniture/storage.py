@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, Feet, case
-from pipeline.corpus.furniture.finishes import DARK_GLASS, LACQUERS, Finish, Scheme, pick, shade
+from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, pick, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, HandleStyle, PanelStyle
 from pipeline.corpus.furniture.intervals import Interval
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
@@ -212,7 +212,6 @@ def wine_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         return case(size, columns, how)
     columns = [Column(1, (Cell("open", 1.3, 2), doors_of(rng, w / count, 1.0, 1))) for _ in range(count)]
     shape = case(size, columns, how)
-    bottle = replace(DARK_GLASS, name="bottle", color=(0.02, 0.05, 0.025))
     bottles: list[Piece] = []
     for board in [p for p in shape.base if "_board_" in p.name and p.name.split("_")[1] == "0"]:
         low, high = board.solid.bounds()
@@ -220,8 +219,10 @@ def wine_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
             x, z = low[0] + 0.06 + 0.105 * k, high[2] + 0.041
             start = low[1] + 0.03
             name = f"bottle_{board.name}_{k}"
-            bottles += pieces(name, rod((x, start, z), (x, start + 0.08, z), 0.014, n=8), bottle, group=name)
-            bottles += pieces(name, rod((x, start + 0.08, z), (x, min(start + 0.28, high[1] - 0.005), z), 0.038, n=10), bottle, group=name)
+            bottles += pieces(name, rod((x, start, z), (x, start + 0.08, z), 0.014, n=8), "bottle", group=name)
+            bottles += pieces(
+                name, rod((x, start + 0.08, z), (x, min(start + 0.28, high[1] - 0.005), z), 0.038, n=10), "bottle", group=name
+            )
     return Shape(shape.base + tuple(bottles), shape.movers)
 
 

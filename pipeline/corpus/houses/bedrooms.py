@@ -20,7 +20,7 @@ NIGHTSTANDS = {"none": 0, "one": 1, "two": 2}
 
 
 def furnish_bedroom(arranger: Arranger) -> None:
-    """Furnish a bedroom of grown-ups."""
+    """Furnish a bedroom, or a child's room."""
     category = arranger.choose("bed")
     bed = place_bed(arranger, category)
     if bed is None and category == "double_bed":
@@ -39,27 +39,13 @@ def furnish_bedroom(arranger: Arranger) -> None:
     arranger.light([(bed[1].x, bed[1].y)] if bed is not None and arranger.wants("lamp_over_bed") else [])
 
 
-def furnish_kids_room(arranger: Arranger) -> None:
-    """Furnish a child's room."""
-    bed = place_bed(arranger, arranger.choose("bed"))
-    if bed is not None:
-        nightstands(arranger, bed, NIGHTSTANDS[arranger.choose("nightstands")])
-    at_walls(arranger, arranger.wishes("pieces"))
-    extras(arranger)
-    if arranger.wants("wall_lamp"):
-        arranger.on_wall("wall_lamp", 1.5)
-    arranger.light()
-
-
 def at_walls(arranger: Arranger, pieces: list[str]) -> None:
     """Put desks with their chairs and other large pieces to the walls, in either order."""
     if arranger.chance(0.5):
         pieces.reverse()
     for piece in pieces:
-        if piece == "desk":
-            arranger.pair_at_wall(piece, arranger.choose("desk_seat"))
-        elif piece == "dressing_table":
-            arranger.pair_at_wall(piece, arranger.choose("dressing_seat"))
+        if piece in {"desk", "dressing_table"}:
+            arranger.pair_at_wall(piece)
         else:
             arranger.at_wall(piece, corner=0.8, tries=6)
 

@@ -26,15 +26,6 @@ SQUARE_SHARE = 0.35
 """Share of the tables for four that are square, where there is one."""
 
 
-def furnish_dining(arranger: Arranger) -> None:
-    """Furnish a dining room: the table group, then cabinets along the walls."""
-    furnish_dining_corner(arranger)
-    for category in arranger.wishes("pieces"):
-        arranger.at_wall(category)
-    for category in arranger.wishes("extras"):
-        arranger.in_corner(category)
-
-
 def furnish_dining_corner(arranger: Arranger) -> None:
     """Put a table with chairs where there is room for them; fewer chairs and a smaller table if there is not."""
     rates = load()["dining"]

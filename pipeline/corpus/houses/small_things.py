@@ -12,12 +12,11 @@ import numpy as np
 
 from pipeline.card import cards
 from pipeline.corpus.furniture.catalogue import Model
-from pipeline.corpus.furniture.level_tops import Surfaces
-from pipeline.corpus.houses import walkable_grid
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load as load_rates
 from pipeline.corpus.houses.records import Item, Rect, wrap
-from pipeline.corpus.houses.room_occupancy import Side, against, box_of, meets
+from pipeline.corpus.houses.room_occupancy import Side, against, box_of, meets, problems
+from pipeline.corpus.houses.stock import Surfaces
 from pipeline.entities.plan import Opening
 
 MARGIN = 0.01
@@ -187,7 +186,7 @@ def _on_floor(arranger: Arranger, category: str) -> None:
         return
     space = arranger.space
     spot = against(arranger.rng, space, model, front=0.0, corner=0.8)
-    cut_off = walkable_grid.problems(space)[0]
-    if spot is not None and space.try_add(model, spot) and walkable_grid.problems(space)[0] > cut_off:
+    cut_off = problems(space)[0]
+    if spot is not None and space.try_add(model, spot) and problems(space)[0] > cut_off:
         space.items.pop()
         space.solids.pop()

@@ -11,11 +11,10 @@ from shapely.affinity import rotate
 from shapely.geometry import LineString, Point, Polygon, box
 
 from pipeline import taxonomy
-from pipeline.corpus.houses import dining, walkable_grid
+from pipeline.corpus.houses import dining
 from pipeline.corpus.houses.house import make_house
-from pipeline.corpus.houses.planner import make_plan
-from pipeline.corpus.houses.room_occupancy import Space
-from pipeline.corpus.houses.room_sampling import agenda
+from pipeline.corpus.houses.planner import agenda, make_plan
+from pipeline.corpus.houses.room_occupancy import Space, problems
 from pipeline.manifest import digest
 from pipeline.seeds import generator
 
@@ -95,7 +94,7 @@ def test_a_robot_gets_from_door_to_door_and_near_most_things(home):
         if min(np.ptp(room.polygon, axis=0)) < 1.2:
             continue
         space.items = [i for i in home.items if i.room == k and not small(i)]
-        cut_off, far = walkable_grid.problems(space)
+        cut_off, far = problems(space)
         assert cut_off == 0, room.type
         assert not far, room.type
 
