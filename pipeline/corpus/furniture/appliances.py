@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.casework import Case, Cell, CellKind, Column, case
-from pipeline.corpus.furniture.finishes import FINISHES, Finish, Scheme, one_of, pick
+from pipeline.corpus.furniture.finishes import FINISHES, Material, Scheme, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
 from pipeline.corpus.furniture.intervals import Interval, around, corners, edges, inset
 from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, pieces, staves
@@ -27,7 +27,7 @@ def _display(x: Interval, face: float, z: Interval) -> Pieces:
     return pieces("display", box(x, (face - 0.002, face), z), "dark_glass", group="display")
 
 
-def _trim(outside: Finish) -> Finish:
+def _trim(outside: Material) -> Material:
     """Return what handles are made of: steel, but not on steel."""
     return "steel" if outside != "steel" else "graphite"
 
@@ -204,7 +204,7 @@ def washing_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sch
     return Shape(base, tuple(movers))
 
 
-def _top_loader(size: Size, outside: Finish) -> Shape:
+def _top_loader(size: Size, outside: Material) -> Shape:
     """Return a machine filled from above: a lid over an upright drum, dials on a panel at the back."""
     w, d, h = size
     x, y, t = around(w / 2), around(d / 2), 0.018
@@ -233,7 +233,7 @@ def _top_loader(size: Size, outside: Finish) -> Shape:
     return Shape(base + _display((-0.08, 0.08), face, around(0.014, at)), tuple(movers))
 
 
-def _cabinet(x: Interval, y: Interval, h: float, t: float, finish: Finish) -> Pieces:
+def _cabinet(x: Interval, y: Interval, h: float, t: float, finish: Material) -> Pieces:
     """Return the housing without its front: sides, top, bottom, back and four feet."""
     parts = pieces("top", box(x, y, (h - 0.03, h), 0.004), finish)
     parts += pieces("sides", [box(span, (y[0] + t, y[1]), (0.012, h - 0.03)) for span in edges(x, t)], finish)
@@ -252,7 +252,7 @@ def _on_square(angle: float, x: Interval, z: Interval, zc: float) -> tuple[float
     return (c * scale * half_x, zc + s * scale * half_z)
 
 
-def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
+def _porthole(r: float, zc: float, face: float, finish: Material) -> Mover:
     """Return the round door: a rim and a bulging glass, hinged at the left."""
     rim = standing(ring((r, r - 0.012), (r - 0.055, r - 0.055), (0.003, 0.035), 24), (0, face, zc))
     glass = standing(revolve([(r - 0.055, 0.006), (r - 0.055, 0.02), (0.6 * r, 0.032)], 24), (0, face, zc))
@@ -263,7 +263,7 @@ def _porthole(r: float, zc: float, face: float, finish: Finish) -> Mover:
     return Mover("door", parts, "revolute", (0, 0, -1), (-r, face - 0.035, zc), math.radians(100), "hinge_door", "door")
 
 
-def _detergent(x: Interval, z: Interval, face: float, t: float, finish: Finish) -> Mover:
+def _detergent(x: Interval, z: Interval, face: float, t: float, finish: Material) -> Mover:
     """Return the detergent drawer: a small box behind its front, with a grip."""
     middle = Rect(x, z, face).middle
     solids = tray(inset(x, 0.006), (face + t, face + 0.2), inset(z, 0.012), 0.008)

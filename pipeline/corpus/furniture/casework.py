@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.finishes import Material
 from pipeline.corpus.furniture.fronts import GAP, FrontStyle, Rect, Side, door, drawer, reach, sliding_door
 from pipeline.corpus.furniture.intervals import Interval, around, inset
 from pipeline.corpus.furniture.shape import Mover, Piece, Pieces, Shape, pieces
@@ -51,12 +51,12 @@ class Case:
     the sides, `nose` how far in front alone; `top` its finish; `gap` is left between fronts: thick doors need more, their inner edge swings wide.
     """
 
-    body: Finish
+    body: Material
     style: FrontStyle
     feet: Feet
     feet_height: float
-    feet_finish: Finish
-    top: Finish | None = None
+    feet_finish: Material
+    top: Material | None = None
     top_thickness: float = 0.022
     overhang: float = 0.0
     board: float = 0.018
@@ -211,7 +211,7 @@ def _sliding(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect:
     return base, movers
 
 
-def feet(kind: Feet, x: Interval, y: Interval, height: float, finish: Finish) -> Pieces:
+def feet(kind: Feet, x: Interval, y: Interval, height: float, finish: Material) -> Pieces:
     """Return what a piece stands on, under the rectangle `x`, `y`, from the floor to `height` [m]."""
     if height <= 0 or kind == "none":
         return ()

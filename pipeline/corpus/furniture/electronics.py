@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import Finish, Scheme, one_of, shade
+from pipeline.corpus.furniture.finishes import Finish, Material, Scheme, draw_material, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid, top_button, top_knob
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, split
 from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, Size, pieces, staves
@@ -58,7 +58,7 @@ def remote(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     return Shape(base, tuple(movers))
 
 
-def _key(name: str, x: float, y: float, half_x: float, half_y: float, top: float, finish: Finish, rise: float = 0.003) -> Mover:
+def _key(name: str, x: float, y: float, half_x: float, half_y: float, top: float, finish: Material, rise: float = 0.003) -> Mover:
     """Return a key on a level top that goes down by 1 mm."""
     return top_button(name, around(half_x, x), around(half_y, y), (top + 0.0012, top + max(rise, 0.002)), finish, 0.001)
 
@@ -66,7 +66,7 @@ def _key(name: str, x: float, y: float, half_x: float, half_y: float, top: float
 def phone(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a telephone that lies on its back: all screen with keys at its side, a keypad, or one that flips open."""
     w, d, h = size
-    finish = one_of(rng, ("dark", "silver", Finish("shell_blue", shade(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500)))
+    finish = draw_material(rng, "dark", "silver", Finish("shell_blue", shade(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500))
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     if form == "smart":
         side = w / 2 - 0.0014
@@ -197,11 +197,11 @@ def printer(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
 WIRE = 0.004  # radius of a bail [m]
 
 
-def _enamel(rng: np.random.Generator) -> Finish:
+def _enamel(rng: np.random.Generator) -> Material:
     """Draw the colour of a small appliance."""
     colour = one_of(rng, ((0.55, 0.05, 0.04), (0.68, 0.60, 0.42), (0.30, 0.45, 0.42), (0.05, 0.09, 0.16)))
     gay = Finish("enamel", shade(rng, colour, 0.15), 0.25, density=900)
-    return one_of(rng, ("steel", "enamel", "graphite", gay))
+    return draw_material(rng, "steel", "enamel", "graphite", gay)
 
 
 def toaster(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
@@ -306,7 +306,7 @@ def _jug(y: float, low: float, high: float, r: float) -> Pieces:
 def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a pot with a lid that lifts off: two ears, a long handle, or a bail."""
     w, d, h = size
-    finish = one_of(rng, ("steel", _enamel(rng), "cast_iron"))
+    finish = draw_material(rng, "steel", _enamel(rng), "cast_iron")
     grip = "steel" if finish != "steel" or rng.random() < 0.5 else "plastic"
     # The hoop of a bail lies level behind the pot, so that the pot is in front of the middle of its box.
     r = w / 2 - 0.025 if form == "bail" else d / 2

@@ -85,6 +85,11 @@ def one_of(rng: np.random.Generator, things: Sequence[Thing]) -> Thing:
     return things[int(rng.integers(len(things)))]
 
 
+def draw_material(rng: np.random.Generator, *materials: Material) -> Material:
+    """Draw one of some materials."""
+    return one_of(rng, materials)
+
+
 def wood(rng: np.random.Generator, name: str) -> Finish:
     """Return a wood of that name in a shade of its own."""
     return Finish(name, shade(rng, WOODS[name]), 0.5, pattern="grain", density=620)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import split_bent_quads
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
-from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, one_of, pick
+from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Material, Scheme, draw_material, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, lid, panel, reach, top_button
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, Size, group_pieces, join_shapes, pieces, staves
@@ -38,7 +38,7 @@ NOSE = 0.018  # how far a worktop stands out over its fronts [m]
 def unit_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> Case:
     """Draw how a kitchen unit is made: white carcass boards, a stone or wooden counter, fronts that cover the edges."""
     style = front_style(rng, scheme, panels)
-    counter = one_of(rng, ("stone", "marble", scheme.body))
+    counter = draw_material(rng, "stone", "marble", scheme.body)
     return Case(scheme.body, style, "plinth", PLINTH, "plastic", top=counter, top_thickness=0.038, nose=NOSE)
 
 
@@ -87,14 +87,14 @@ def tall_unit(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return case(size, [Column(1, cells)], how)
 
 
-def bowl(x: Interval, y: Interval, top: float, depth: float, finish: Finish) -> Pieces:
+def bowl(x: Interval, y: Interval, top: float, depth: float, finish: Material) -> Pieces:
     """Return an open basin under the rectangle `x`, `y`: a bottom and four walls whose rims end at `top` [m]."""
     low, wall = top - depth, 0.008
     drain = revolve([(0.025, low), (0.022, low + 0.003)], 12, ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2))
     return pieces("bowl", [box(x, y, (low - wall, low)), *walls(x, y, (low, top), wall)], finish) + pieces("drain", drain, "steel")
 
 
-def tap(y: float, z: float, height: float, reach_out: float, finish: Finish) -> Shape:
+def tap(y: float, z: float, height: float, reach_out: float, finish: Material) -> Shape:
     """Return a tap at (0, y, z): a column, a spout that reaches towards the front, and a lever at its side that turns up."""
     r, radius = 0.011, reach_out / 2
     steps = np.linspace(0, math.pi * 0.85, 6)
@@ -330,7 +330,7 @@ def _leaf(rng: np.random.Generator, form: str, rect: Rect, style: FrontStyle) ->
     return group_pieces(parts, "leaf")
 
 
-def _door_lever(name: str, at: Axis3, outwards: float, side: float, finish: Finish) -> Mover:
+def _door_lever(name: str, at: Axis3, outwards: float, side: float, finish: Material) -> Mover:
     """Return a lever on one face of the leaf: a rose, a neck and an arm towards the hinge, which is pressed down."""
     turn = math.pi / 2 if outwards < 0 else -math.pi / 2
     rose = [s.turned("x", turn).moved(at) for s in revolve([(0.024, 0.0005), (0.024, 0.007), (0.020, 0.009)], 16)]

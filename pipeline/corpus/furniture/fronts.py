@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.finishes import Material
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, group_pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, slab, stack, standing
@@ -53,8 +53,8 @@ class FrontStyle:
 
     panel: PanelStyle
     handle: HandleStyle
-    finish: Finish
-    metal: Finish
+    finish: Material
+    metal: Material
     thickness: float = 0.019
 
 
@@ -272,7 +272,7 @@ def sliding_door(name: str, rect: Rect, style: FrontStyle, towards: float, trave
 
 
 def drawer(
-    name: str, rect: Rect, style: FrontStyle, cell: tuple[Interval, Interval, float], inside: Finish, *, after: tuple[str, ...] = ()
+    name: str, rect: Rect, style: FrontStyle, cell: tuple[Interval, Interval, float], inside: Material, *, after: tuple[str, ...] = ()
 ) -> Mover:
     """Return a drawer: a front over `rect`, and a bottom, two sides and a back that run in its cell.
 
@@ -319,7 +319,7 @@ def lid(name: str, parts: Pieces, hinge: tuple[float, float, float], upper: floa
     return Mover(name, parts, "revolute", (-1, 0, 0), hinge, upper, "hinge_lid", "lid", UP, parent)
 
 
-def knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 0.022) -> Mover:
+def knob(name: str, at: Axis3, radius: float, finish: Material, *, depth: float = 0.022) -> Mover:
     """Return a dial on a front plane; `at` is its middle on the plane."""
     profile = [(radius, 0.001), (radius, 0.35 * depth), (0.82 * radius, depth)]
     dial = standing(revolve(profile, 16), at)
@@ -328,7 +328,7 @@ def knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 
     return Mover(name, parts, "revolute", (0, 1, 0), at, TURN, "hinge_knob", "knob")
 
 
-def top_knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float) -> Mover:
+def top_knob(name: str, at: Axis3, radius: float, finish: Material, *, depth: float) -> Mover:
     """Return a dial on a level plane, seen from above; `at` is its middle on the plane."""
     dial = revolve([(radius, at[2] + 0.001), (radius, at[2] + 0.4 * depth), (0.85 * radius, at[2] + depth)], 12, (at[0], at[1]))
     top = at[2] + depth
@@ -337,14 +337,14 @@ def top_knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: floa
     return Mover(name, parts, "revolute", (0, 0, -1), at, TURN, "hinge_knob", "knob", UP)
 
 
-def button(name: str, x: Interval, z: Interval, y: float, finish: Finish) -> Mover:
+def button(name: str, x: Interval, z: Interval, y: float, finish: Material) -> Mover:
     """Return a push button that stands 8 mm out of the plane `y` and is pressed by 4 mm."""
     cap = box(x, (y - 0.008, y - 0.0045), z, 0.001)
     at = ((x[0] + x[1]) / 2, y, (z[0] + z[1]) / 2)
     return Mover(name, pieces("button", cap, finish), "prismatic", (0, 1, 0), at, 0.004, "slider_button", "button")
 
 
-def top_button(name: str, x: Interval, y: Interval, z: Interval, finish: Finish, press: float) -> Mover:
+def top_button(name: str, x: Interval, y: Interval, z: Interval, finish: Material, press: float) -> Mover:
     """Return a button on a level plane: its cap over `x`, `y`, `z` goes down by `press` [m]."""
     cap = box(x, y, z, 0.001)
     at = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2, z[1])

@@ -182,7 +182,7 @@ def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         soap = Finish("soap", shade(rng, color, 0.1), 0.3, density=900)
         return Shape(pieces("body", body, soap) + pieces("pump", head, scheme.handle))
     if form == "shampoo":
-        finish = Finish("plastic", shade(rng, color, 0.1), 0.35, density=900)
+        finish: Material = Finish("plastic", shade(rng, color, 0.1), 0.35, density=900)
         body = [slab(circle(r, 14, squash=0.62), z) for z in ((0.0, 0.25 * h), (0.6 * h, 0.86 * h))]
         top = pieces("cap", slab(circle(0.6 * r, 12, squash=0.8), (0.86 * h, h), 0.003), "shell")
         band = slab(circle(r, 14, squash=0.62), (0.25 * h, 0.6 * h))
@@ -215,7 +215,7 @@ def kettle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     w, d, h = size
     r = 0.5 * min(d, 0.75 * w)
     x = -w / 2 + r
-    finish = "kettle_steel"
+    finish: Material = "kettle_steel"
     if rng.random() >= 0.6:
         finish = Finish("enamel", shade(rng, LACQUERS[pick(rng, "white sage navy barn_red mint")]), 0.3, density=900)
     tall = 0.86 * h if form == "electric" else 0.7 * h

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import band, curve, tube, turns
-from pipeline.corpus.furniture.finishes import Finish, Scheme, cane, one_of
+from pipeline.corpus.furniture.finishes import Finish, Material, Scheme, cane, one_of
 from pipeline.corpus.furniture.finishes import shade as tinted
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
@@ -60,7 +60,9 @@ def shade(rng: np.random.Generator, scheme: Scheme, kind: str, radius: float, z:
     metal, weave = scheme.handle, cane(rng)
     profile = [(r * radius, z[0] + q * (z[1] - z[0])) for r, q in PROFILES[kind]]
     dome = metal if rng.random() < 0.6 else scheme.front
-    cover = {"rattan": weave, "cone": scheme.front, "dome": dome, "mushroom": scheme.front, "crystal": "glow"}.get(kind, "shade_cloth")
+    cover: Material = {"rattan": weave, "cone": scheme.front, "dome": dome, "mushroom": scheme.front, "crystal": "glow"}.get(
+        kind, "shade_cloth"
+    )
     if cover == "shade_cloth" and rng.random() < 0.3:
         cover = Finish("shade_linen", tinted(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
     return pieces("shade", _walls(kind, profile, at, n), cover) + _fittings(radius, profile[-1][0], z, at, metal)
@@ -95,7 +97,7 @@ def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
     return walls
 
 
-def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Finish) -> Pieces:
+def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Material) -> Pieces:
     """Build the spokes that carry an open shade whose upper rim has radius `top`, its socket and its bulb, where there is room for them."""
     low, high = z
     tall = high - low

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
-from pipeline.corpus.furniture.finishes import FINISHES, Finish, Scheme, one_of, shade
+from pipeline.corpus.furniture.finishes import FINISHES, Finish, Material, Scheme, draw_material, shade
 from pipeline.corpus.furniture.intervals import Spot, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
 from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
@@ -36,7 +36,7 @@ def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
 
 def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[Pieces, float]:
     """Return a pot with soil, and the height of the soil: tapered, cylindrical, bellied, a box, or a planter on legs."""
-    finish = one_of(rng, ("ceramic", "clay", scheme.front, "concrete_pot"))
+    finish = draw_material(rng, "ceramic", "clay", scheme.front, "concrete_pot")
     kind = int(rng.integers(4))
     lift = 0.0
     parts: Pieces = ()
@@ -60,7 +60,7 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
 class Growth:
     """What grows from a pot: `half` (x, y) its room, from the soil at `crown` up to `h` [m], over a pot of radius `pot`."""
 
-    def __init__(self, half: Spot, crown: float, h: float, pot: float, green: Finish) -> None:
+    def __init__(self, half: Spot, crown: float, h: float, pot: float, green: Material) -> None:
         self.half, self.small = np.array(half), min(half)
         self.crown, self.h, self.pot, self.green = crown, h, pot, green
         self.stems: list[Solid] = []
@@ -80,7 +80,7 @@ class Growth:
         self.roots.append(root)
         self.tips.append(tip)
 
-    def parts(self, stems: str, bark: Finish, width: float, leaf: Finish | None = None, *, belly: float = 0.5, n: int = 8) -> Pieces:
+    def parts(self, stems: str, bark: Material, width: float, leaf: Material | None = None, *, belly: float = 0.5, n: int = 8) -> Pieces:
         """Return the stems, of `bark`, and the leaves, `width` [m] wide."""
         leaves = blades(np.array(self.roots), np.array(self.tips), width, belly=belly, n=n)
         return pieces(stems, self.stems, bark) + pieces("leaves", leaves, leaf or self.green)

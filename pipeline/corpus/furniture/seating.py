@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import arc, curve, lean, prism, sheet, tube, turns, wall
-from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Scheme, cane, one_of
+from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Material, Scheme, cane, one_of
 from pipeline.corpus.furniture.intervals import around, between, corners, polar, split
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
@@ -24,7 +24,7 @@ class Frame:
     high: float
     slope: float
     thick: float
-    wood: Finish
+    wood: Material
 
     def bar(self, a: float, b: float, inset: float, deep: float = 0.8) -> Solid:
         """Return a rail across between shares `a` and `b` of the height, `inset` from either side."""

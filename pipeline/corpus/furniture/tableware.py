@@ -6,7 +6,19 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, prism, tube
-from pipeline.corpus.furniture.finishes import FABRICS, FINISHES, LACQUERS, WOODS, Finish, Scheme, one_of, pick, shade
+from pipeline.corpus.furniture.finishes import (
+    FABRICS,
+    FINISHES,
+    LACQUERS,
+    WOODS,
+    Finish,
+    Material,
+    Scheme,
+    draw_material,
+    one_of,
+    pick,
+    shade,
+)
 from pipeline.corpus.furniture.fronts import Rect, lid
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, polar
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, Size, pieces, staves
@@ -194,7 +206,7 @@ def tray_walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0
 def trash_can(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
     """Build a bin: round with a pedal, square, with a lid that slides, or with one that swings in a hood."""
     w, d, h = size
-    finish = one_of(rng, ("steel", "plastic", Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900)))
+    finish = draw_material(rng, "steel", "plastic", Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))
     top = h - 0.035
     cover_finish = finish if pick(rng, "same dark") == "same" else "plastic"
     if form in ("round", "pedal"):
@@ -226,7 +238,7 @@ def trash_can(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return Shape(base, (Mover("lid", cover, "prismatic", axis, (0.0, 0.0, h), 0.8 * w, "slider_lid", "lid", UP),))
 
 
-def _swing_bin(x: Interval, y: Interval, h: float, finish: Finish, hood: Finish) -> Shape:
+def _swing_bin(x: Interval, y: Interval, h: float, finish: Material, hood: Material) -> Shape:
     """Return a bin whose hood has a flap at its front: it hangs from its upper edge and is pulled outwards."""
     t, low = 0.009, 0.68 * h
     base = pieces("body", tray_walls(x, y, (0.0, low), t, 0.002), finish)

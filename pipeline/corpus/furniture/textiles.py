@@ -13,6 +13,7 @@ from pipeline.corpus.furniture.finishes import (
     FABRICS,
     ORIENTAL,
     Finish,
+    Material,
     Pattern,
     Scheme,
     cover,
@@ -27,13 +28,13 @@ from pipeline.corpus.furniture.solids import Solid, board, box, circle, cushion,
 SEAM = 0.007  # height of a piping
 
 
-def piping(rng: np.random.Generator, scheme: Scheme) -> Finish | None:
+def piping(rng: np.random.Generator, scheme: Scheme) -> Material | None:
     """Draw what a cushion's seams are piped with, if they are."""
     return scheme.second if rng.random() < scheme.manner.piping else None
 
 
 def seat_cushion(
-    x: Interval, y: Interval, z: Interval, radius: float, cloth: Finish, piping: Finish | None = None, crown: float = 0.02
+    x: Interval, y: Interval, z: Interval, radius: float, cloth: Material, piping: Material | None = None, crown: float = 0.02
 ) -> Pieces:
     """Return a seat cushion with a swelling top; with `piping` a cord of that finish runs around its upper edge."""
     crown = min(crown, 0.3 * (z[1] - z[0]))
@@ -90,7 +91,7 @@ def throw_pillow(at: tuple[float, float, float], size: float, tilt: float, yaw: 
     return solid.moved((at[0], at[1], at[2] - float(solid.vertices[:, 2].min())))
 
 
-def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: Finish) -> Pieces:
+def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: Material) -> Pieces:
     """Return a cover that lies on a mattress at `z` and hangs over its sides by `drop`; x, y are the mattress's."""
     side = 0.55 * thick
     solids = [cushion(inset(x, -side), y, (z, z + thick), 0.45 * thick, 3, 0.25 * thick)]
@@ -145,7 +146,7 @@ def curtain(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     return Shape(tuple(replace(p, finish=sheer) if p.finish is cloth else p for p in parts))
 
 
-def _panel(start: float, end: float, d: float, h: float, cloth: Finish) -> Pieces:
+def _panel(start: float, end: float, d: float, h: float, cloth: Material) -> Pieces:
     """Return one pleated panel between two x [m], deeper folds the more it is drawn aside."""
     wide = abs(end - start)
     folds = max(3, round(wide / 0.11))
