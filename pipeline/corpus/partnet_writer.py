@@ -135,7 +135,7 @@ CORNERS = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1), (-1, 1, -1),
 # PartNet's word for a moving link; storage furniture and tables turn "door" into this.
 ROTATION_DOOR = "rotation_door"
 FURNITURE = frozenset({"StorageFurniture", "Table"})
-JOINT_WORDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slider"}
+JOINT_WORDS = {"revolute": "hinge", "prismatic": "slider"}
 
 
 def write_partnet(models: Sequence[Model], folder: Path) -> None:
@@ -202,17 +202,15 @@ def urdf(name: str, links: Sequence[LinkRecord], frame: Frame) -> str:
             ET.SubElement(joint, "axis", xyz=_xyz(mesh_frame(np.array(mover.axis))))
         ET.SubElement(joint, "child", link=link.name)
         ET.SubElement(joint, "parent", link=link.parent)
-        if mover and mover.type != "continuous":
-            lower, upper = _range(mover, frame)
-            ET.SubElement(joint, "limit", lower=_number(lower), upper=_number(upper))
+        if mover:
+            ET.SubElement(joint, "limit", lower="0", upper=_number(_travel(mover, frame)))
     ET.indent(robot, "\t")
     return '<?xml version="1.0" ?>\n' + ET.tostring(robot, encoding="unicode") + "\n"
 
 
-def _range(mover: Mover, frame: Frame) -> tuple[float, float]:
-    """Return the joint's limits [rad or normalised units]."""
-    unit = frame.scale if mover.type == "prismatic" else 1.0
-    return mover.lower * unit, mover.upper * unit
+def _travel(mover: Mover, frame: Frame) -> float:
+    """Return how far a joint opens [rad or normalised units]."""
+    return mover.upper * (frame.scale if mover.type == "prismatic" else 1.0)
 
 
 def mobility(links: Sequence[LinkRecord], words: Sequence[tuple[str, str, str]], frame: Frame) -> list[dict[str, Any]]:
@@ -226,9 +224,9 @@ def mobility(links: Sequence[LinkRecord], words: Sequence[tuple[str, str, str]],
         mover = link.mover
         data: dict[str, Any] = {}
         if mover:
-            lower, upper = (np.degrees(v) if mover.type != "prismatic" else v for v in _range(mover, frame))
+            travel = _travel(mover, frame)
             sign = -1.0 if k % 2 else 1.0
-            limit = {"a": float(sign * lower), "b": float(sign * upper), "noLimit": mover.type == "continuous"}
+            limit = {"a": sign * 0.0, "b": float(sign * (np.degrees(travel) if mover.type == "revolute" else travel)), "noLimit": False}
             if mover.type == "prismatic":
                 limit |= {"rotates": False, "noRotationLimit": False, "rotationLimit": 0}
             direction = sign * mesh_frame(np.array(mover.axis))
@@ -305,13 +303,11 @@ def meta(model: Model, name: str) -> dict[str, str]:
 
 def _write_component(component: Component, frame: Frame, folder: Path, sheet: Atlas) -> None:
     """Write the OBJ and MTL of one component, a group per material; all components of an object share one texture."""
-    finishes = list(dict.fromkeys(piece.finish for piece in component.pieces))
-    names = {finish: wavefront.material_name(finish, k) for k, finish in enumerate(finishes)}
     stem = f"original-{component.number}"
-    groups = [wavefront.Group(stem, names[f], tuple(p for p in component.pieces if p.finish == f)) for f in finishes]
+    groups = wavefront.group_by_finish(component.pieces, stem)
     text = wavefront.text(groups, f"{stem}.mtl", sheet)
     (folder / f"{stem}.obj").write_bytes(text.obj(frame.scale, -frame.centre))
-    (folder / f"{stem}.mtl").write_bytes(wavefront.mtl([(names[f], f) for f in finishes], f"../{TEXTURE}"))
+    (folder / f"{stem}.mtl").write_bytes(wavefront.mtl(groups, f"../{TEXTURE}"))
     if not component.collides_as_seen:
         convex = wavefront.bare(f"convex-{component.number}", colliders(component.pieces))
         (folder / f"convex-{component.number}.obj").write_bytes(convex.obj(frame.scale, -frame.centre))

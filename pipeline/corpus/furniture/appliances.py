@@ -10,7 +10,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, CellKind, Column, cas
 from pipeline.corpus.furniture.finishes import FINISHES, Material, Scheme, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
 from pipeline.corpus.furniture.intervals import Interval, around, corners, edges, inset
-from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, pieces, staves
 from pipeline.corpus.furniture.solids import box, circle, revolve, ring, shell, slab, standing, strips
 
 FRONTS = ("enamel", "steel", "graphite")
@@ -37,16 +37,16 @@ def _bounds(shape: Shape, name: str) -> NDArray[np.float64]:
     return next(p.solid.bounds() for p in shape.base if name in p.name)
 
 
-def refrigerator(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def refrigerator(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build thick walls and doors: one, a freezer over or under, side by side, French doors or one door over drawers."""
     outside = one_of(rng, FRONTS)
     handle = "steel" if outside != "steel" else "handle_steel"
     style = FrontStyle("slab", pick(rng, "long bar groove"), outside, handle, thickness=0.055)  # type: ignore[arg-type]
     how = Case("enamel" if outside != "graphite" else "graphite", style, "plinth", 0.06, "plastic", outside, 0.03, board=0.04, gap=0.008)
     side: CellKind = "left" if rng.random() < 0.5 else "right"
-    paired = form == "side_by_side" and size[0] > 0.62
+    paired = form == "side_by_side" and w > 0.62
     cells: tuple[Cell, ...]
-    if form == "french" and size[0] > 0.62:
+    if form == "french" and w > 0.62:
         cells = (Cell("pair", 1.9, 3), Cell("drawer", 0.9))
     elif form == "single" or paired:
         cells = (Cell(side, 1.0, 4),)
@@ -57,21 +57,20 @@ def refrigerator(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     else:
         cells = (Cell(side, 1.0, 3), Cell(side, 0.6, 1))
     columns = [Column(0.85, (Cell("left", 1, 4),)), Column(1, (Cell("right", 1, 4),))] if paired else [Column(1, cells)]
-    shape = case(size, columns, how)
+    shape = case((w, d, h), columns, how)
     base = tuple(replace(p, finish=FINISHES["glass"]) if "_board_" in p.name else p for p in shape.base)
     if not paired:
         return Shape(base, shape.movers)
     first = shape.movers[0]  # water and ice from the door
     low, high = next(p.solid.bounds() for p in first.pieces if p.name == "front")
     right = 0.35 * low[0] + 0.65 * high[0]
-    niche = box((right - 0.10, right), (low[1] - 0.003, low[1]), (0.60 * size[2], 0.60 * size[2] + 0.24), 0.001)
+    niche = box((right - 0.10, right), (low[1] - 0.003, low[1]), (0.60 * h, 0.60 * h + 0.24), 0.001)
     door = replace(first, pieces=first.pieces + pieces("dispenser", niche, "dark_glass", group="dispenser"))
     return Shape(base, (door, *shape.movers[1:]))
 
 
-def oven(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def oven(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a range with a hob, dials, a glazed door and a drawer, or a tower of two ovens."""
-    w, d, h = size
     outside = one_of(rng, FRONTS)
     style = FrontStyle("dark_glass", "bar", outside, _trim(outside), thickness=0.03)
     tower = form == "built_in"
@@ -112,14 +111,14 @@ def _burners(w: float, d: float, z: float) -> Pieces:
     return parts
 
 
-def dishwasher(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def dishwasher(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a door that folds down under a strip with buttons, and racks inside."""
     outside = one_of(rng, FRONTS)
     style = FrontStyle("slab", pick(rng, "bar flat"), outside, _trim(outside), thickness=0.03)  # type: ignore[arg-type]
     how = Case(outside, style, "plinth", 0.08, "plastic", outside, 0.025, board=0.03)
     hidden = form == "hidden"  # its buttons sit in the door's upper edge, behind one front
     cells = (Cell("flap", 1.0),) if hidden else (Cell("blank", 0.12), Cell("flap", 1.0))
-    shape = case(size, [Column(1, cells)], how)
+    shape = case((w, d, h), [Column(1, cells)], how)
     leaf = next(m for m in shape.movers if m.part_class == "hinge_door")
     (x0, y0, _), (x1, y1, z) = _bounds(shape, "bottom").tolist()
     top = float(min(p.solid.bounds()[0, 2] for p in shape.base if p.name == "top" or "_shelf_" in p.name))
@@ -127,7 +126,7 @@ def dishwasher(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     movers = [_rack(f"rack_{k}", inset((x0, x1), 0.012), (y0 + 0.035, y1 - 0.03), low, leaf.name) for k, low in enumerate(levels)]
     base = shape.base
     if not hidden:
-        face, z = -size[1] / 2 + reach(style.handle), float(_bounds(shape, "_blank")[:, 2].mean())
+        face, z = -d / 2 + reach(style.handle), float(_bounds(shape, "_blank")[:, 2].mean())
         xs = enumerate((0.12, 0.155, 0.19))
         movers += [button(f"button_{k}", around(0.011, x), around(0.009, z), face, "plastic") for k, x in xs]
         base += _display((-0.05, 0.05), face, around(0.012, z))
@@ -149,13 +148,12 @@ def _rack(name: str, x: Interval, y: Interval, z: float, door: str) -> Mover:
     return Mover(name, parts, "prismatic", (0, -1, 0), at, 0.85 * (y[1] - y[0]), "slider_drawer", "rack", after=(door,))
 
 
-def microwave(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def microwave(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a glazed door hinged at the left, a panel with buttons and a dial at the right, a turntable inside."""
-    w, d, _ = size
     outside = one_of(rng, ("enamel", "graphite", "steel"))
     style = FrontStyle("dark_glass", "flat", outside, _trim(outside), thickness=0.024)
     how = Case(outside, style, "none", 0.012, "plastic", outside, 0.014, board=0.014)
-    shape = case(size, [Column(0.74, (Cell("left"),)), Column(0.26, (Cell("blank", 1, 0, replace(style, panel="slab")),))], how)
+    shape = case((w, d, h), [Column(0.74, (Cell("left"),)), Column(0.26, (Cell("blank", 1, 0, replace(style, panel="slab")),))], how)
     plate = _bounds(shape, "_blank")
     x, face = float(plate[:, 0].mean()), -d / 2 + reach("flat")
     z0, z1 = plate[0, 2], plate[1, 2]
@@ -175,12 +173,11 @@ def microwave(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return Shape(base + pieces("turntable", table, "glass", group="turntable"), shape.movers + tuple(movers))
 
 
-def washing_machine(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a round door in front of a drum, a detergent drawer, a dial and buttons; or a lid over a drum that stands."""
-    w, d, h = size
     outside = "enamel" if rng.random() < 0.65 else "graphite"
     if form == "top":
-        return _top_loader(size, outside)
+        return _top_loader(w, d, h, outside)
     t, face = 0.02, -d / 2 + 0.045  # plane of the front panel
     x, panel = around(w / 2), h - 0.135
     r, zc = 0.34 * w, 0.5 * (panel + 0.1)
@@ -204,9 +201,8 @@ def washing_machine(rng: np.random.Generator, form: str, size: Size, scheme: Sch
     return Shape(base, tuple(movers))
 
 
-def _top_loader(size: Size, outside: Material) -> Shape:
+def _top_loader(w: float, d: float, h: float, outside: Material) -> Shape:
     """Return a machine filled from above: a lid over an upright drum, dials on a panel at the back."""
-    w, d, h = size
     x, y, t = around(w / 2), around(d / 2), 0.018
     deck, back = h - 0.16, y[1] - 0.12
     inner = inset(x, t)

@@ -11,10 +11,10 @@ from pipeline.card import cards
 from pipeline.corpus.furniture import finishes
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.furniture.finishes import Scheme
-from pipeline.corpus.furniture.shape import Shape, Size, fit_to_size, frozen
+from pipeline.corpus.furniture.shape import Shape, fit_to_size, frozen
 from pipeline.errors import ContentError
 
-Builder = Callable[[np.random.Generator, str, Size, Scheme], Shape]
+Builder = Callable[[np.random.Generator, str, float, float, float, Scheme], Shape]
 
 
 def builder(category: str) -> Builder:
@@ -47,5 +47,5 @@ def main_material(model: Model) -> str:
 def shape_of(model: Model) -> Shape:
     """Return the shape of a model, its box exactly `model.size`; static models have their movers fixed."""
     rng = seeds.generator(model.seed, "corpus.furniture.shape")
-    shape = fit_to_size(builder(model.category)(rng, model.form, model.size, scheme_of(model)), model.size)
+    shape = fit_to_size(builder(model.category)(rng, model.form, *model.size, scheme_of(model)), model.size)
     return shape if model.articulated else frozen(shape)

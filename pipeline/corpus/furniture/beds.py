@@ -8,19 +8,18 @@ from pipeline.corpus.furniture.bent import prism, tube
 from pipeline.corpus.furniture.finishes import Scheme, cane
 from pipeline.corpus.furniture.intervals import Interval, around, edges, inset, split
 from pipeline.corpus.furniture.legs import leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, pillow, rod
 from pipeline.corpus.furniture.textiles import channels, duvet, throw_pillow, tufted_panel
 
 SOFT = frozenset({"upholstered", "tufted", "wing"})
 
 
-def bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bed of one of the forms, made up with a mattress, a duvet and pillows."""
-    w, d, h = size
     x, y = around(w / 2), around(d / 2)
     if form == "platform":
-        return _platform(rng, size, scheme)
+        return _platform(rng, w, d, h, scheme)
     soft = form in SOFT
     lift = float(rng.uniform(0.1, 0.16))
     rail_top = min(lift + float(rng.uniform(0.15, 0.2)), 0.4 * h)
@@ -148,9 +147,8 @@ def _hoop(x: Interval, y: float, h: float, scheme: Scheme) -> list[Solid]:
     return solids
 
 
-def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
+def _platform(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a low deck of boards that stands out around the mattress, with a plain back that leans."""
-    w, d, h = size
     deck = min(0.26, 0.32 * h)
     x, y = w / 2, d / 2
     boards = [box(span, (-y, y - 0.08), (deck - 0.035, deck), 0.003) for span in split((-x, x), max(3, round(w / 0.28)), 0.0008)]
@@ -166,13 +164,12 @@ def _platform(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
     return Shape(parts + bedding(rng, around(x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * room), scheme, 0.6 * room))
 
 
-def kids_bed(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def kids_bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bed of one of the forms. Where it is wide the sleeper lies along x."""
-    return Shape({"rails": _rail_bed, "bunk": _bunk, "car": _car}[form](rng, size, scheme))
+    return Shape({"rails": _rail_bed, "bunk": _bunk, "car": _car}[form](rng, w, d, h, scheme))
 
 
-def _rail_bed(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _rail_bed(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     lift, t = 0.12, 0.045
     x, y = around(w / 2), around(d / 2)
     low, guard = min(0.36, 0.42 * h), 0.66 * h
@@ -195,9 +192,8 @@ def _rail_bed(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + bedding(rng, inner_x, inner_y, lift + 0.08, low + 0.06, scheme)
 
 
-def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _bunk(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Two berths over each other and a ladder at the front."""
-    w, d, h = size
     t, thick = 0.06, 0.026
     x, y = around(w / 2), (-d / 2 + 0.07, d / 2)
     posts = [box((px, px + t), (py, py + t), (0, h), 0.008) for px in (x[0], x[1] - t) for py in (y[0], y[1] - t)]
@@ -224,9 +220,8 @@ def _bunk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("ladder", ladder, scheme.timber)
 
 
-def _car(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _car(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a bed between two boards cut like a car, with wheels; the bonnet is at the front."""
-    w, d, h = size
     x = w / 2
     body = min(0.55, 0.6 * h)
     parts: Pieces = ()

@@ -8,7 +8,7 @@ from pipeline.corpus.furniture.bent import curve, tube, turns
 from pipeline.corpus.furniture.finishes import Scheme, pick
 from pipeline.corpus.furniture.intervals import around, polar
 from pipeline.corpus.furniture.lamps import bulb, cord, rose, shade, shade_word, turned_along
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, ring, rod, slab
 
 THIN = 0.0035  # radius of a cord
@@ -19,14 +19,13 @@ SHARES = {  # height of a shade in its widths
 }  # fmt: skip
 
 
-def pendant_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def pendant_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a shade or globe on a cord, a bar over a table, a cluster, a chandelier, a lantern, a sputnik, or a cage."""
-    w, d, h = size
     if form == "linear" and d > w:  # built along x, turned to the longer side
-        return turned_along(pendant_lamp(rng, form, (d, w, h), scheme))
+        return turned_along(pendant_lamp(rng, form, d, w, h, scheme))
     build = {"linear": _linear, "cluster": _cluster, "chandelier": _chandelier, "sputnik": _sputnik}.get(form)
     if build:
-        return Shape(build(rng, size, scheme))
+        return Shape(build(rng, w, d, h, scheme))
     kind = form if form in ("globe", "lantern", "cage") else shade_word(rng, scheme, "globe lantern cage crystal paper")
     tall = min(0.66 * h, SHARES.get(kind, 0.6) * w)
     return Shape(shade(rng, scheme, kind, w / 2, (0.0, tall)) + _hung(tall - 0.002, h, scheme))
@@ -37,8 +36,7 @@ def _hung(z: float, h: float, scheme: Scheme) -> Pieces:
     return pieces("cord", cord((z, h - 0.024)), scheme.handle) + pieces("rose", rose(h), scheme.handle)
 
 
-def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _linear(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     metal = scheme.handle
     parts = pieces("rose", box(around(0.3 * w), (-0.035, 0.035), (h - 0.024, h), 0.004), metal)
     if rng.random() < 0.35:  # one long beam of light
@@ -61,8 +59,7 @@ def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts
 
 
-def _cluster(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _cluster(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     count = int(rng.integers(3, 7))
     r = 0.2 * min(w, d) if min(w, d) > 0.3 else 0.34 * min(w, d)
     squash = min(1.0, d / w)
@@ -77,9 +74,8 @@ def _cluster(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts
 
 
-def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _chandelier(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Arms that swing out and up from a turned stem, each with a small shade or a candle, drops of glass below."""
-    w, _, h = size
     metal = scheme.handle
     r, body = w / 2, min(0.62 * h, 0.8 * w)
     steps = [(0.012, 0.0), (0.05, 0.06), (0.02, 0.14), (0.055, 0.24), (0.02, 0.36), (0.03, 0.6), (0.012, 0.8), (0.02, 0.95), (0.006, 1.0)]
@@ -101,9 +97,8 @@ def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + _hung(body - 0.002, h, scheme)
 
 
-def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _sputnik(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Rods in all directions from a ball, a lit globe on each."""
-    w, d, h = size
     count, r = 12, 0.09 * min(w, d)
     middle = np.array([0, 0, min(0.66 * h, 0.9 * min(w, d)) / 2])
     z = float(middle[2])
@@ -120,16 +115,15 @@ def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + _hung(z + 0.8 * r, h, scheme)
 
 
-def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a disc, a square panel, a ring, a rain of crystal, a lattice frame or a row of spots; tall ones hang in tiers."""
-    w, d, h = size
     metal, squash = scheme.handle, d / w
     if form == "crystal" or (h > 0.3 and form != "spots"):
-        return Shape(_rain(form, size, scheme))
+        return Shape(_rain(form, w, d, h, scheme))
     if form == "frame":
-        return Shape(_lattice(size, scheme))
+        return Shape(_lattice(w, d, h, scheme))
     if form == "spots":
-        return Shape(_spots(rng, size, scheme))
+        return Shape(_spots(rng, w, d, h, scheme))
     if form == "ring":
         parts = pieces("ring", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32, squash=squash), "glow")
         parts += pieces("hoop", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0.4 * h, 0.6 * h), 32, squash=squash), metal)
@@ -146,9 +140,8 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return Shape(pieces("mount", mount, finish) + pieces("diffuser", diffuser, "glow"))
 
 
-def _spots(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _spots(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a bar with a row of spots that look down, each a little another way."""
-    w, d, h = size
     metal = scheme.handle
     parts = pieces("bar", box(around(w / 2), (-0.03, 0.03), (h - 0.03, h), 0.003), metal)
     r, long = min(0.045, 0.3 * h, 0.2 * d), min(0.14, 0.9 * (h - 0.04))
@@ -160,9 +153,8 @@ def _spots(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("ends", [box(around(0.08 * w), around(d / 2), (h - 0.02, h))] if d > 0.07 else [], metal)
 
 
-def _rain(form: str, size: Size, scheme: Scheme) -> Pieces:
+def _rain(form: str, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build rods in three tiers that hang from a plate: of crystal, or lit."""
-    w, d, h = size
     edged = form in ("square", "frame")
     plate = revolve([(0.5 * w, h - 0.03), (0.5 * w, h - 0.008), (0.47 * w, h)], 28)
     if edged:
@@ -179,9 +171,8 @@ def _rain(form: str, size: Size, scheme: Scheme) -> Pieces:
     return parts
 
 
-def _lattice(size: Size, scheme: Scheme) -> Pieces:
+def _lattice(w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a lit box in a wooden frame with a grid before it."""
-    w, d, h = size
     t = 0.03
     x, y = w / 2, d / 2
     inner_x, inner_y = around(x - t), around(y - t)

@@ -9,13 +9,12 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import Finish, Material, Scheme, draw_material, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid, top_button, top_knob
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, split
-from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, pieces, staves
 from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, slab, standing
 
 
-def laptop(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def laptop(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a closed laptop: a deck of keys and a touch pad under a screen that opens past the upright."""
-    w, d, h = size
     finish = one_of(rng, ("silver", "dark"))
     deck = 0.56 * h
     x, y = around(w / 2), around(d / 2)
@@ -37,9 +36,8 @@ def laptop(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     return Shape(base, (lid("screen", cover, (0.0, d / 2, low), math.radians(125)),))
 
 
-def remote(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def remote(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a remote control: a slim body with a round pad and rows of buttons; a simple one has few."""
-    w, d, h = size
     top = h - 0.003
     finish = one_of(rng, ("dark", "dark", "pale"))
     cap = "plastic_white" if finish == "dark" else "plastic"
@@ -63,9 +61,8 @@ def _key(name: str, x: float, y: float, half_x: float, half_y: float, top: float
     return top_button(name, around(half_x, x), around(half_y, y), (top + 0.0012, top + max(rise, 0.002)), finish, 0.001)
 
 
-def phone(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a telephone that lies on its back: all screen with keys at its side, a keypad, or one that flips open."""
-    w, d, h = size
     finish = draw_material(rng, "dark", "silver", Finish("shell_blue", shade(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500))
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     if form == "smart":
@@ -103,9 +100,8 @@ def phone(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     return Shape(base, (lid("cover", cover, (0.0, d / 2, low), math.radians(140)), *(replace(m, after=("cover",)) for m in movers)))
 
 
-def camera(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def camera(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a camera: a body with a lens, a release, dials, and a flash that folds up on the larger one."""
-    w, d, h = size
     reflex = form == "reflex"
     face, back = -0.06 * d, 0.5 * d
     finish = "dark" if reflex or rng.random() < 0.4 else "silver"
@@ -135,9 +131,8 @@ def camera(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     return Shape(base, (*movers, lid("flash", flash, (0.05 * w, back, low), math.radians(60))))
 
 
-def keyboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def keyboard(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a keyboard: rows of keys with a space bar, or a block of figures."""
-    w, d, h = size
     top = h - 0.006
     finish = one_of(rng, ("dark", "silver", "pale"))
     cap = one_of(rng, ("keys_pale", "plastic_white")) if finish != "silver" else "keys"
@@ -159,9 +154,8 @@ def keyboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     return Shape(base, tuple(movers))
 
 
-def printer(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def printer(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a printer: a paper drawer below, a gap where sheets come out, a panel of buttons, a scanner's lid on top."""
-    w, d, h = size
     finish = one_of(rng, ("pale", "dark", "graphite"))
     trim = "plastic" if finish == "pale" else "trim"
     x, y, t = (-w / 2, w / 2), (-d / 2 + 0.012, d / 2), 0.012
@@ -204,9 +198,8 @@ def _enamel(rng: np.random.Generator) -> Material:
     return draw_material(rng, "steel", "enamel", "graphite", gay)
 
 
-def toaster(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def toaster(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a toaster: slots along its length, a lever that is pressed down, a dial and a crumb tray."""
-    w, d, h = size
     finish = _enamel(rng)
     stand = 0.026  # of dial and lever before the front
     y = (-d / 2 + stand, d / 2)
@@ -239,9 +232,8 @@ def toaster(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     return Shape(base, tuple(movers))
 
 
-def coffee_machine(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def coffee_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a foot with a drip tray, a column with a tank's lid, and a head: for a jug, for a filter holder or for capsules."""
-    w, d, h = size
     finish = _enamel(rng)
     trim = "plastic" if finish != "graphite" else "steel"
     x, y = around(w / 2), (-d / 2 + 0.03, d / 2)
@@ -303,9 +295,8 @@ def _jug(y: float, low: float, high: float, r: float) -> Pieces:
     return parts + pieces("jug_handle", grip, "plastic", group="jug_handle")
 
 
-def kitchen_pot(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def kitchen_pot(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a pot with a lid that lifts off: two ears, a long handle, or a bail."""
-    w, d, h = size
     finish = draw_material(rng, "steel", _enamel(rng), "cast_iron")
     grip = "steel" if finish != "steel" or rng.random() < 0.5 else "plastic"
     # The hoop of a bail lies level behind the pot, so that the pot is in front of the middle of its box.

@@ -12,7 +12,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Material, Scheme, draw_material, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, lid, panel, reach, top_button
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset
-from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, Size, group_pieces, join_shapes, pieces, staves
+from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, group_pieces, join_shapes, pieces, staves
 from pipeline.corpus.furniture.solids import (
     Solid,
     box,
@@ -42,10 +42,9 @@ def unit_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> Ca
     return Case(scheme.body, style, "plinth", PLINTH, "plastic", top=counter, top_thickness=0.038, nose=NOSE)
 
 
-def kitchen_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def kitchen_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a base unit with doors, drawers, a drawer over doors, or for a corner, under a counter."""
     how = unit_style(rng, scheme)
-    w = size[0]
     count = max(1, round(w / 0.6))
     door = Cell("left" if rng.random() < 0.5 else "right", 1.0, 1)
     if form == "drawers":
@@ -57,26 +56,25 @@ def kitchen_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Sch
         columns = [Column(1, (Cell("drawer", 0.28), replace(door, kind="left" if i < count / 2 else "right"))) for i in range(count)]
     else:
         columns = [Column(1, (Cell("pair", 1.0, 1),))] * max(1, round(w / 1.0)) if w > 0.55 else [Column(1, (door,))]
-    return case(size, columns, how)
+    return case((w, d, h), columns, how)
 
 
-def wall_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def wall_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a wall unit with doors, plain or glazed, or with fronts that lift."""
     how = replace(unit_style(rng, scheme, "glass" if form == "glass" else ""), feet="none", feet_height=0.0, nose=0.0)
     how = replace(how, top=scheme.body, top_thickness=0.018)
-    w = size[0]
     count = max(1, round(w / 0.9))
     if form == "lift":
-        cell = (Cell("lift", 1.0, 0), Cell("lift", 1.0, 0)) if size[2] > 0.75 else (Cell("lift", 1.0, 1),)
-        return case(size, [Column(1, cell)] * count, how)
-    return case(size, [Column(1, (Cell("pair" if w / count > 0.5 else "left", 1.0, 2),))] * count, how)
+        cell = (Cell("lift", 1.0, 0), Cell("lift", 1.0, 0)) if h > 0.75 else (Cell("lift", 1.0, 1),)
+        return case((w, d, h), [Column(1, cell)] * count, how)
+    return case((w, d, h), [Column(1, (Cell("pair" if w / count > 0.5 else "left", 1.0, 2),))] * count, how)
 
 
-def tall_unit(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def tall_unit(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a unit as tall as the room's doors: a larder of two doors, one that is pulled out, or doors over drawers."""
     how = replace(unit_style(rng, scheme), top=scheme.body, top_thickness=0.018, nose=0.0)
     side = "left" if rng.random() < 0.5 else "right"
-    door = Cell("pair" if size[0] > 0.75 else side, 1.0, 3)  # type: ignore[arg-type]
+    door = Cell("pair" if w > 0.75 else side, 1.0, 3)  # type: ignore[arg-type]
     cells: tuple[Cell, ...]
     if form == "larder":
         cells = (replace(door, share=1.3), replace(door, share=1.0, shelves=1, inner=int(rng.integers(0, 3))))
@@ -84,7 +82,7 @@ def tall_unit(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         cells = (replace(door, share=0.35, shelves=0), Cell("drawer", 1.2), Cell("drawer", 0.7))
     else:
         cells = (replace(door, share=1.6), Cell("drawer", 0.3), Cell("drawer", 0.45), Cell("drawer", 0.45))
-    return case(size, [Column(1, cells)], how)
+    return case((w, d, h), [Column(1, cells)], how)
 
 
 def bowl(x: Interval, y: Interval, top: float, depth: float, finish: Material) -> Pieces:
@@ -117,9 +115,8 @@ def _sunk(shape: Shape, hole_x: Interval, hole_y: Interval, basin: Pieces) -> Sh
     return Shape(tuple(p for p in shape.base if p is not old) + top + basin, shape.movers)
 
 
-def sink_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def sink_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a base unit whose counter holds a bowl and a tap, over doors or a deep drawer."""
-    w, d, h = size
     tall = 0.28 if rng.random() < 0.5 else 0.22
     body = max(h - tall, 0.62)  # the tap stands above the counter
     how = unit_style(rng, scheme)
@@ -133,9 +130,8 @@ def sink_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return join_shapes(shape, tap(d / 2 - 0.065, body, h - body, 0.2, scheme.handle))
 
 
-def vanity(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def vanity(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a washstand: doors or drawers under a counter with a vessel or an inset basin and a tap."""
-    w, d, h = size
     body = h - 0.17
     legs = rng.random() < 0.4
     how = replace(unit_style(rng, scheme), overhang=0.006, nose=0.0)
@@ -175,9 +171,8 @@ def _oval(rx: float, y: Interval, z: float) -> NDArray[np.float64]:
     return np.column_stack([circle(rx, 24, (0.0, (y[0] + y[1]) / 2), ry / rx), np.full(24, z)])
 
 
-def toilet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def toilet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bowl on a foot, a tank with a button or a lever, and a seat and a lid that fold up against the tank."""
-    w, d, h = size
     rim = 0.52 * h
     tank_y = (d / 2 - 0.27 * d, d / 2)
     bowl_y = (-d / 2 + 0.004, tank_y[0] - 0.035)
@@ -242,9 +237,8 @@ def _along(u: NDArray[np.float64], a: float, b: float, power: float) -> NDArray[
     return np.asarray(u * reach[:, None])
 
 
-def bathtub(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a tub with aprons, or one that stands free on its oval foot; a tap at its head."""
-    w, d, h = size
     a, b, low = w / 2, d / 2, 0.14
     rim = h if form == "free" else h - 0.12
     u = _rays(w, d)
@@ -266,9 +260,8 @@ def bathtub(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     return Shape(base)
 
 
-def shower(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a tray with two glass walls, an open entrance at the front, a rail with a head and a mixer at the back wall."""
-    w, d, h = size
     tray, metal = 0.06, scheme.handle
     x, y, back = around(w / 2), around(d / 2), d / 2 - 0.05
     basin = [box(x, y, (0, tray - 0.02), 0.003), *walls(x, y, (tray - 0.02, tray), 0.04)]
@@ -292,9 +285,8 @@ LEAF = 0.04  # thickness of a leaf [m]
 LEVER = 0.055  # how far a lever stands out of its leaf [m]
 
 
-def room_door(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def room_door(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a door in its frame: flush, with two panels, or glazed; it opens towards the front."""
-    w, d, h = size
     white = Finish("door_white", LACQUERS["white"], 0.4, density=500)
     finish = white if rng.random() < 0.5 else scheme.body
     t, stop = 0.045, 0.012

@@ -3,10 +3,10 @@
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
-from pipeline.corpus.furniture.finishes import FABRICS, FINISHES, LACQUERS, WOODS, Finish, Pattern, Scheme, one_of, pick, shade
+from pipeline.corpus.furniture.finishes import FABRICS, FINISHES, LACQUERS, WOODS, Finish, Material, Pattern, Scheme, one_of, pick, shade
 from pipeline.corpus.furniture.fronts import Rect, frame
 from pipeline.corpus.furniture.intervals import Interval, around, corners, polar
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, Vector, box, circle, cushion, pillow, revolve, ring, rod, slab, standing
 from pipeline.corpus.furniture.tableware import glaze
 from pipeline.style import Color
@@ -27,9 +27,8 @@ def frame_boards(w: float, h: float, wide: float, y: Interval, bevel: float = 0.
     return frame(Rect((-x, x), (0.0, h), y[0]), Rect(around(x - wide), (wide, h - wide), y[0]), y, bevel)
 
 
-def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def picture(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a framed print with a mount, a bare canvas, or a pair of prints."""
-    w, d, h = size
     back = d / 2
     pattern: Pattern = pick(rng, "art_blocks art_hills art_circles art_lines")  # type: ignore[assignment]
     ground, ink = one_of(rng, INKS)
@@ -51,9 +50,8 @@ def picture(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     return Shape(parts)
 
 
-def mirror(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def mirror(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a mirror in a rectangular or a round frame, or in a sunburst."""
-    w, d, h = size
     back = d / 2
     frame = scheme.handle if rng.random() < 0.55 else scheme.timber
     if form == "rectangle":
@@ -72,9 +70,8 @@ def mirror(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     return Shape(parts + pieces("rays", rays, frame))
 
 
-def clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a round wall clock with a dial, or one with bare marks on a ring."""
-    w, d, h = size
     back, r = d / 2, w / 2
     at = (0, back, h / 2)
     rim = scheme.handle if rng.random() < 0.6 else scheme.timber
@@ -104,9 +101,8 @@ FRUIT: tuple[Color, ...] = ((0.62, 0.05, 0.03), (0.70, 0.30, 0.02), (0.45, 0.52,
 CONTENTS: tuple[Color, ...] = ((0.62, 0.48, 0.28), (0.16, 0.07, 0.03), (0.74, 0.70, 0.60), (0.50, 0.26, 0.08), (0.30, 0.34, 0.12))
 
 
-def television(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def television(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a flat television on a foot in the middle, or on two feet."""
-    w, d, h = size
     low = 0.06 * h
     panel = box(around(w / 2), (-0.015, 0.02), (low, h), 0.003)
     glass = box(around(w / 2 - 0.008), (-0.017, -0.015), (low + 0.016, h - 0.008))
@@ -119,9 +115,8 @@ def television(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     return Shape(pieces("panel", [panel, belly], "shell") + pieces("screen", glass, "screen") + pieces("feet", feet, "shell"))
 
 
-def photo_frame(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def photo_frame(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a framed photograph that leans back on a strut, upright or oblong."""
-    w, d, h = size
     paper, ink = one_of(rng, INKS)
     art = Finish("photo", paper, 0.4, pattern=pick(rng, "art_hills art_circles art_blocks"), density=400, second=ink)  # type: ignore[arg-type]
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
@@ -133,9 +128,8 @@ def photo_frame(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     return Shape(pieces("frame", boards, frame) + pieces("photo", sheet, art) + pieces("strut", strut, "shell"))
 
 
-def candle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def candle(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a pillar candle on a dish, one in a glass, or a thin one on a stick."""
-    w, _, h = size
     r = w / 2
     wax = Finish("wax", shade(rng, one_of(rng, WAX), 0.08), 0.5, density=900)
     wick = pieces("wick", rod((0, 0, 0.93 * h), (0, 0, h), 0.0015, n=6), "shell")
@@ -154,9 +148,8 @@ def candle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     return Shape(pieces("stick" if form == "stick" else "dish", stand, scheme.handle) + pieces("wax", body, wax) + wick)
 
 
-def tray(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def tray(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a tray with a rim: oblong with two grips, or round."""
-    w, d, h = size
     finish = scheme.timber if rng.random() < 0.6 else scheme.front
     if form == "round":
         floor = slab(circle(0.49 * w, 24), (0.0, 0.25 * h))
@@ -170,9 +163,8 @@ def tray(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     return Shape(pieces("tray", solids, finish) + pieces("grips", grips, scheme.handle))
 
 
-def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def bottle(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bottle: of soap with a pump, of shampoo, of wine, of oil."""
-    w, _, h = size
     r = w / 2
     color = LACQUERS[pick(rng, "white sage blush ivory terracotta dusty_blue anthracite")]
     if form == "pump":
@@ -195,9 +187,8 @@ def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     return Shape(pieces("body", body, finish) + top + pieces("label", band, "label"))
 
 
-def canister(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def canister(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a jar for the kitchen: of glass with what it holds, or of pottery, with a lid."""
-    w, _, h = size
     r = w / 2
     lid = scheme.timber if rng.random() < 0.6 else scheme.handle
     top = [slab(circle(0.96 * r, 16), (0.86 * h, 0.94 * h), 0.003), slab(circle(0.25 * r, 12), (0.94 * h, h), 0.002)]
@@ -210,9 +201,8 @@ def canister(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     return Shape(pieces("jar", body, glaze(rng)) + pieces("lid", top, lid))
 
 
-def kettle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def kettle(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a kettle with spout and handle: an electric one on its base, or one for the stove."""
-    w, d, h = size
     r = 0.5 * min(d, 0.75 * w)
     x = -w / 2 + r
     finish: Material = "kettle_steel"
@@ -233,9 +223,8 @@ def kettle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     return Shape(pieces("body", [*body, spout], finish) + pieces("lid", top, "shell") + pieces("grip", grip, "shell"))
 
 
-def cutting_board(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def cutting_board(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a board that lies with a knife on it, or a block of knives."""
-    w, d, h = size
     timber = Finish("board", shade(rng, WOODS[pick(rng, "beech oak walnut bamboo")]), 0.5, pattern="grain", density=650)
     board = box(around(w / 2), around(d / 2), (0.0, 0.6 * h), 0.004)
     y = 0.2 * d
@@ -248,9 +237,8 @@ def cutting_board(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     return Shape(parts)
 
 
-def fruit_bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def fruit_bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bowl of fruit: wide and low, or on a foot."""
-    w, _, h = size
     r = w / 2
     finish = Finish("turned_wood", shade(rng, WOODS["walnut"]), 0.5, pattern="grain", density=650) if rng.random() < 0.5 else glaze(rng)
     low = 0.0 if form == "low" else 0.3 * h
@@ -272,9 +260,8 @@ def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, n
     return pieces(f"fruit_{number}", solids, Finish("fruit", shade(rng, color, 0.2), 0.4, density=800))
 
 
-def toy(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def toy(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a toy: a bear that sits, a ball, a car, or a tower of blocks."""
-    w, d, h = size
     bright = [Finish(f"paint_{n}", shade(rng, LACQUERS[n], 0.1), 0.35, density=300) for n in ("coral", "sky", "lemon", "mint")]
     if form == "ball":
         r = min(w, d, h) / 2
@@ -304,9 +291,8 @@ def toy(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     return Shape(pieces("bear", bear, fur))
 
 
-def pen_cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def pen_cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a cup with pens in it, round or square."""
-    w, _, h = size
     r, tall = w / 2, 0.55 * h
     cup = slab(circle(r, 14), (0.0, tall)) if form == "round" else box((-r, r), (-r, r), (0.0, tall), 0.003)
     parts = pieces("cup", cup, scheme.front if rng.random() < 0.5 else scheme.handle)
@@ -317,9 +303,8 @@ def pen_cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     return Shape(parts)
 
 
-def alarm_clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def alarm_clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build an alarm clock: a round one on four feet, or a box with figures."""
-    w, d, h = size
     if form == "box":
         case = box(around(w / 2), (-d / 2 + 0.002, d / 2), (0.0, h), 0.006)
         figures = box(around(0.42 * w), (-d / 2, -d / 2 + 0.002), (0.2 * h, 0.8 * h))
@@ -332,9 +317,8 @@ def alarm_clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     return Shape(pieces("case", body, scheme.handle) + pieces("dial", dial, "light_dial"))
 
 
-def tissue_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def tissue_box(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a box of tissues, oblong or a cube, with one drawn out."""
-    w, d, h = size
     x = w / 2 if form == "flat" else min(w, d) / 2
     finish = scheme.timber
     if rng.random() >= 0.4:
@@ -344,9 +328,8 @@ def tissue_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     return Shape(pieces("box", body, finish) + pieces("tissue", sheet, "paper"))
 
 
-def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def coat_hooks(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a board with hooks, a coat or a bag on some of them; the back is at the wall (+y)."""
-    w, d, h = size
     back = d / 2
     count = max(4, round(w / 0.14))
     xs = np.linspace(-w / 2 + 0.06, w / 2 - 0.06, count).tolist()
@@ -366,9 +349,8 @@ def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     return Shape(parts)
 
 
-def potted_herb(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def potted_herb(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a small plant in a pot: a succulent's rosette, a tuft of herbs, or a trailing one."""
-    w, _, h = size
     tall, count, rise = {"succulent": (0.62 * h, 14, 0.6), "herb": (0.45 * h, 26, 1.0), "grass": (0.4 * h, 22, 1.0)}[form]
     r = 0.36 * w
     pot = glaze(rng) if rng.random() < 0.7 else "ceramic"

@@ -10,7 +10,7 @@ from pipeline.corpus.furniture.bent import band, curve, tube, turns
 from pipeline.corpus.furniture.finishes import Finish, Material, Scheme, cane, one_of
 from pipeline.corpus.furniture.finishes import shade as tinted
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, standing
 
 WALL = 0.006
@@ -60,9 +60,8 @@ def shade(rng: np.random.Generator, scheme: Scheme, kind: str, radius: float, z:
     metal, weave = scheme.handle, cane(rng)
     profile = [(r * radius, z[0] + q * (z[1] - z[0])) for r, q in PROFILES[kind]]
     dome = metal if rng.random() < 0.6 else scheme.front
-    cover: Material = {"rattan": weave, "cone": scheme.front, "dome": dome, "mushroom": scheme.front, "crystal": "glow"}.get(
-        kind, "shade_cloth"
-    )
+    covers: dict[str, Material] = {"rattan": weave, "cone": scheme.front, "dome": dome, "mushroom": scheme.front, "crystal": "glow"}
+    cover = covers.get(kind, "shade_cloth")
     if cover == "shade_cloth" and rng.random() < 0.3:
         cover = Finish("shade_linen", tinted(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
     return pieces("shade", _walls(kind, profile, at, n), cover) + _fittings(radius, profile[-1][0], z, at, metal)
@@ -150,21 +149,19 @@ def turned_along(shape: Shape) -> Shape:
     return Shape(tuple(replace(p, solid=p.solid.turned("z", math.pi / 2)) for p in shape.base))
 
 
-def floor_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a shade on a pole or on three legs, or globes on a stem."""
-    w, _, h = size
     r = w / 2
     if form == "globes":
-        return Shape(_stem_of_globes(rng, size, scheme))
+        return Shape(_stem_of_globes(rng, w, d, h, scheme))
     kind = shade_word(rng, scheme, "globe cage lantern paper crystal mushroom cylinder")
     tall = min(0.26 * h, 0.95 * w)
     parts = shade(rng, scheme, kind, r, (h - tall, h))
-    return Shape(parts + (_tripod(rng, size, tall, scheme) if form == "tripod" else _pole(rng, size, tall, scheme)))
+    return Shape(parts + (_tripod(rng, w, d, h, tall, scheme) if form == "tripod" else _pole(rng, w, d, h, tall, scheme)))
 
 
-def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> Pieces:
+def _tripod(rng: np.random.Generator, w: float, d: float, h: float, tall: float, scheme: Scheme) -> Pieces:
     """Build three legs, the hub on them, sometimes a shelf between them; the shade above is `tall`."""
-    w, _, h = size
     r, metal = w / 2, scheme.handle
     top = h - tall
     ends = [polar(0.95 * r, a) for a in turns(3, math.pi / 2)]
@@ -175,9 +172,8 @@ def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -
     return parts + pieces("hub", hub, metal)
 
 
-def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> Pieces:
+def _pole(rng: np.random.Generator, w: float, d: float, h: float, tall: float, scheme: Scheme) -> Pieces:
     """Build a round foot with a pole under a shade that is `tall`, turned where the style likes ornament."""
-    w, _, h = size
     r, metal = w / 2, scheme.handle
     if scheme.manner.ornament > 0.5:
         steps = [(0.6 * r, 0.0), (0.6 * r, 0.03), (0.05, 0.05), (0.02, 0.12), (0.032, 0.3), (0.016, 0.36 * h), (0.03, 0.42 * h)]
@@ -186,9 +182,8 @@ def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> 
     return pieces("pole", revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20), metal)
 
 
-def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _stem_of_globes(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build three lit globes on arms around a stem."""
-    w, d, h = size
     r, metal = w / 2, scheme.handle
     parts = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
     q = 0.36 * r
@@ -201,9 +196,8 @@ def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pie
     return parts
 
 
-def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a small shade on an arm, a lit bar, a globe on a plate, or candles on swung arms; the back is at the wall."""
-    w, d, h = size
     metal = scheme.handle
     back = d / 2
     if form == "bar":
@@ -232,13 +226,12 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return Shape(parts)
 
 
-def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a shade on a foot of pottery, turned wood or metal, a globe, a mushroom, or a desk lamp with a jointed arm."""
-    w, d, h = size
     metal = scheme.handle
     r = w / 2
     if form == "desk":
-        return turned_along(table_lamp(rng, form, (d, w, h), scheme)) if d > w else Shape(_desk_lamp(rng, size, scheme))
+        return turned_along(table_lamp(rng, form, d, w, h, scheme)) if d > w else Shape(_desk_lamp(rng, w, d, h, scheme))
     if form == "mushroom":
         foot = revolve([(0.5 * r, 0.0), (0.42 * r, 0.1 * h), (0.34 * r, 0.45 * h), (0.4 * r, 0.6 * h)], 20)
         bend = curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2)
@@ -259,9 +252,8 @@ def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     return Shape(pieces("foot", revolve(profile, 20), finish) + shade(rng, scheme, kind, r, (stem, h)))
 
 
-def _desk_lamp(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a round foot, an arm with an elbow and a cone at its end, along x."""
-    w, d, h = size
     q = min(0.5 * d, 0.34 * w)
     x0, tip = -w / 2 + q, w / 2 - 0.28 * d
     foot = revolve([(q, 0.0), (q, 0.014), (0.2 * q, 0.022)], 20, (x0, 0.0))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
 from pipeline.corpus.furniture.finishes import FINISHES, Finish, Material, Scheme, draw_material, shade
 from pipeline.corpus.furniture.intervals import Spot, polar
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
 
 GOLDEN = math.pi * (3 - math.sqrt(5))
@@ -24,9 +24,8 @@ POTS = (  # profiles of (radius, height), in shares
 Points = NDArray[np.float64]
 
 
-def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def plant(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bush, a palm, a monstera, a fiddle fig, or an olive tree in a pot."""
-    w, d, h = size
     pot_r = min(0.3 * min(w, d), 0.2)
     pot, crown = _pot(rng, pot_r, min(0.34 * h, 0.36, 1.9 * pot_r), scheme)
     grow = {"bush": _bush, "palm": _palm, "monstera": _monstera, "fig": _fig, "olive": _olive}[form]

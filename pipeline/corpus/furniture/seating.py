@@ -9,7 +9,7 @@ from pipeline.corpus.furniture.bent import arc, curve, lean, prism, sheet, tube,
 from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Material, Scheme, cane, one_of
 from pipeline.corpus.furniture.intervals import around, between, corners, polar, split
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, board, box, circle, cushion, revolve, rod, slab, standing
 from pipeline.corpus.furniture.textiles import piping, seat_cushion, tufted_panel, upright_pad
 
@@ -121,14 +121,13 @@ def _cross(frame: Frame) -> list[Solid]:
 TUBE = 0.011  # radius of bent steel
 
 
-def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def dining_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a chair: framed (wood, upholstered, spindle, cafe), a shell, a wishbone, or a cantilever."""
     build = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever}.get(form)
-    return Shape(build(rng, size, scheme) if build else _frame_chair(rng, form, size, scheme))
+    return Shape(build(rng, w, d, h, scheme) if build else _frame_chair(rng, form, w, d, h, scheme))
 
 
-def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     seat = min(0.47, 0.56 * h)
     x, y = w / 2, d / 2
     thick = 0.034 * scheme.manner.slim
@@ -168,9 +167,8 @@ def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return parts
 
 
-def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _shell_chair(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a bent shell of plywood, plastic or cloth on four legs, a wire base, or a swivel foot."""
-    w, d, h = size
     seat, x, y = min(0.46, 0.55 * h), w / 2, d / 2
     soft = rng.random() < 0.45
     finish = scheme.soft if soft else scheme.front
@@ -196,9 +194,8 @@ def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces
     return parts + pieces("legs", feet, finish) + pieces("plate", plate, scheme.handle)
 
 
-def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _wishbone(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a round crest that becomes the arms, on posts, with a forked splat and a woven seat."""
-    w, d, h = size
     seat, x, y, wood = min(0.45, 0.55 * h), w / 2, d / 2, scheme.timber
     r = 0.016
     bow = arc((0.0, 0.0), x - 0.018, 0.0, math.pi, 10, (y - 0.02) / (x - 0.018))
@@ -219,9 +216,8 @@ def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), "cord")
 
 
-def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _cantilever(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Bent steel from the floor over the front up to the seat and the back, with cane, leather or cloth between."""
-    w, d, h = size
     seat, x, y = min(0.46, 0.56 * h), w / 2 - TUBE, d / 2
     side = [(y - 0.03, TUBE), (-y + 0.06, TUBE), (-y + TUBE, 0.06), (-y + TUBE, seat - 0.08), (-y + 0.06, seat - 0.02)]
     side += [(0.55 * y, seat - 0.035), (0.66 * y, seat + 0.02), (y - 0.012, h - 0.012)]
@@ -236,9 +232,8 @@ def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("back", lean([pad], seat + 0.02, slope), panel)
 
 
-def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build an official's hat chair with a yoke, or a rose chair with a low square back."""
-    w, d, h = size
     seat = min(0.5, 0.55 * h)
     x, y = 0.5 * w - 0.03, 0.5 * d - 0.03
     wood = scheme.timber
@@ -274,9 +269,8 @@ def _yoke(form: str, x: float, y: float, seat: float, arm: float, h: float) -> t
     return upper, top
 
 
-def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a round upholstered stool, one with a low curved back, or a drum with a skirt."""
-    w, d, h = size
     seat = h if h < 0.56 else min(0.48, 0.6 * h)
     low, squash = seat - 0.11, d / w
     if form == "drum":
@@ -299,9 +293,8 @@ def dressing_chair(rng: np.random.Generator, form: str, size: Size, scheme: Sche
     return Shape(parts)
 
 
-def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a high seat on four legs or on a column; a foot rest goes around it."""
-    w, d, h = size
     seat = h if h < 0.85 else 0.72 * h
     x, y = w / 2, d / 2
     metal, top = scheme.handle, seat - 0.075
@@ -331,9 +324,8 @@ def barstool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     return Shape(parts)
 
 
-def stool(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bed-end bench, an ottoman, a stool on legs, a round pouf, or a ceramic drum."""
-    w, d, h = size
     x, y = w / 2, d / 2
     if form == "drum":
         profile = [(0.62, 0.0), (0.7, 0.06), (0.92, 0.26), (1.0, 0.5), (0.92, 0.74), (0.7, 0.94), (0.62, 1.0)]

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.finishes import FINISHES, Finish, Material
 from pipeline.corpus.furniture.solids import Solid, Vector, box, hull
 
-Size = Sequence[float]  # (w, d, h) [m]
 Axis3 = tuple[float, float, float]
 FRONT: Axis3 = (0.0, -1.0, 0.0)
 UP: Axis3 = (0.0, 0.0, 1.0)
@@ -40,14 +39,14 @@ Pieces = tuple[Piece, ...]
 class Mover:
     """A body that moves against its parent (a mover's name, or "base").
 
-    `axis` (unit) and `origin` [m] in the object frame at rest; motion goes from `lower` <= 0 to `upper` >= 0 [rad or m] and
-    positive opens. `outward` is the direction its face looks at rest (GAPartNet's z axis).
+    `axis` (unit) and `origin` [m] in the object frame at rest; motion goes from 0 to `upper` [rad or m] and
+    opens. `outward` is the direction its face looks at rest (GAPartNet's z axis).
     `after` names the movers that must be open before this one can move: a rack waits for the door before it.
     """
 
     name: str
     pieces: Pieces
-    type: Literal["revolute", "prismatic", "continuous"]
+    type: Literal["revolute", "prismatic"]
     axis: Axis3
     origin: Axis3
     upper: float
@@ -55,7 +54,6 @@ class Mover:
     semantic: str
     outward: Axis3 = FRONT
     parent: str = "base"
-    lower: float = 0.0
     after: tuple[str, ...] = ()
 
 
@@ -137,7 +135,7 @@ def fit_to_size(shape: Shape, size: Vector) -> Shape:
         x, y, z = ((np.asarray(mover.origin) + offset) * factors).tolist()
         stretch = float(np.abs(np.asarray(mover.axis)) @ factors) if mover.type == "prismatic" else 1.0
         placed.append(
-            replace(mover, pieces=place(mover.pieces), origin=(x, y, z), upper=mover.upper * stretch, lower=mover.lower * stretch)
+            replace(mover, pieces=place(mover.pieces), origin=(x, y, z), upper=mover.upper * stretch)
         )
     return Shape(place(shape.base), tuple(placed))
 

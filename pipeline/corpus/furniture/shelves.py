@@ -7,18 +7,17 @@ import numpy as np
 from pipeline.corpus.furniture.casework import Cell, Column, case
 from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, one_of
 from pipeline.corpus.furniture.intervals import around
-from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import box
 from pipeline.corpus.furniture.storage import case_style, doors_of, front_style
 
 
-def bookshelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def bookshelf(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Open shelves, open shelves over doors, or glass doors."""
-    w, _, h = size
     style = front_style(rng, scheme, "slab shaker")
     how = replace(case_style(rng, scheme, style, "plinth plinth none square", (0.07, 0.1)), overhang=0.0)
     if form == "ladder":
-        return ladder_shelf(size, scheme, max(4, round(h / 0.38)))
+        return ladder_shelf(w, d, h, scheme, max(4, round(h / 0.38)))
     count = max(1, min(4, round(w / 0.8)))
     rows = max(3, round(h / 0.36))
     if form == "open":
@@ -29,7 +28,7 @@ def bookshelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         columns = [Column(1, (replace(door, panel=glass, share=3.0), Cell("drawer", 0.55))) for _ in range(count)]
     else:
         columns = [Column(1, (Cell("open", 1.9, rows - 3), doors_of(rng, w / count, 0.9, 1))) for _ in range(count)]
-    shape = case(size, columns, how)
+    shape = case((w, d, h), columns, how)
     return Shape(shape.base + (books(rng, shape) if form == "open" else ()), shape.movers)
 
 
@@ -55,9 +54,8 @@ def books(rng: np.random.Generator, shape: Shape) -> Pieces:
     return tuple(parts)
 
 
-def ladder_shelf(size: Size, scheme: Scheme, rows: int) -> Shape:
+def ladder_shelf(w: float, d: float, h: float, scheme: Scheme, rows: int) -> Shape:
     """Boards in two side frames of square posts, open at the back."""
-    w, d, h = size
     t = 0.028
     posts = [box((x, x + t), (y, y + t), (0, h), 0.002) for x in (-w / 2, w / 2 - t) for y in (-d / 2, d / 2 - t)]
     rungs = [box((x + 0.004, x + t - 0.004), around(d / 2 - t), (z, z + 0.03)) for x in (-w / 2, w / 2 - t) for z in (0.08, h - 0.06)]
@@ -68,14 +66,14 @@ def ladder_shelf(size: Size, scheme: Scheme, rows: int) -> Shape:
     return Shape(base)
 
 
-def shelf(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def shelf(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a ladder shelf, a frame with uprights, or stacked cubes."""
     if form == "cubes":
         style = front_style(rng, scheme)
         how = replace(case_style(rng, scheme, style, "none plinth", (0, 0)), overhang=0.0)
-        rows = max(1, round(size[2] / 0.36))
-        count = max(1, round(size[0] / 0.4))
+        rows = max(1, round(h / 0.36))
+        count = max(1, round(w / 0.4))
         columns = [Column(1, (Cell("open"),) * rows)] * count
-        shape = case(size, columns, how, reserve=0.0)
+        shape = case((w, d, h), columns, how, reserve=0.0)
         return Shape(shape.base + books(rng, shape))
-    return ladder_shelf(size, scheme, max(2, round(size[2] / (0.3 if form == "frame" else 0.4))))
+    return ladder_shelf(w, d, h, scheme, max(2, round(h / (0.3 if form == "frame" else 0.4))))

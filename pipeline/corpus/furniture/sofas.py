@@ -8,19 +8,18 @@ from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube, turns,
 from pipeline.corpus.furniture.finishes import Finish, Material, Scheme, cane, one_of, shade
 from pipeline.corpus.furniture.intervals import Interval, around, between, corners, edges, inset, polar, split
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, slab, stack
 from pipeline.corpus.furniture.textiles import bolster, channels, piping, seat_cushion, throw_pillow, tufted_panel, upright_pad
 
 
-def lounge_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def lounge_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build an easy chair in a wooden frame, an office chair, a wing chair, a recliner's shell, a tub or a cane chair."""
     build = {"easy": _easy, "office": _office, "wing": _wing, "lounger": _lounger, "tub": _tub, "rattan": _rattan}[form]
-    return Shape(build(rng, size, scheme))
+    return Shape(build(rng, w, d, h, scheme))
 
 
-def _easy(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _easy(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     seat, x, y = min(0.42, 0.48 * h), w / 2, d / 2
     arm = seat + 0.18
     t = 0.032 * scheme.manner.slim
@@ -46,8 +45,7 @@ def _easy(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("laths", lean(laths, seat - 0.1, slope), wood)
 
 
-def _wing(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _wing(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     seat, x, y = min(0.44, 0.46 * h), w / 2, d / 2
     kind = draw_kind(rng, scheme, "plank cross sled hairpin pipe blade horse")
     low, cloth = 0.17, scheme.soft
@@ -68,8 +66,7 @@ def _wing(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts
 
 
-def _office(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _office(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     seat, r = min(0.5, 0.52 * h), 0.46 * min(w, d)
     base: list[Solid] = []
     wheels: list[Solid] = []
@@ -98,9 +95,8 @@ def _office(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("arms", arms, "plastic")
 
 
-def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _lounger(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Bent plywood shells with thick leather pads on a star foot."""
-    w, d, h = size
     seat, x, y = min(0.4, 0.46 * h), w / 2, d / 2
     wood, rise = scheme.timber, h - seat
     under = curve([(-y + 0.02, seat - 0.062), (-0.3 * y, seat - 0.075), (0.3 * y, seat - 0.078), (0.44 * y, seat - 0.07)], 2)
@@ -120,9 +116,8 @@ def _lounger(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("foot", star + column, scheme.handle)
 
 
-def _tub(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _tub(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a round seat inside a wall that wraps it, sewn in channels or plain."""
-    w, d, h = size
     seat, x, y = min(0.43, 0.52 * h), w / 2, d / 2
     low = 0.13
     kind = draw_kind(rng, scheme, "plank cross sled hairpin pipe horse")
@@ -144,9 +139,8 @@ def _tub(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("seat", stack(rings), scheme.soft if rng.random() < 0.7 else scheme.second)
 
 
-def _rattan(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _rattan(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a round back of cane in a bent frame, a cushion on a woven seat."""
-    w, d, h = size
     seat, x, y = min(0.4, 0.5 * h), w / 2, d / 2
     pole = Finish("rattan_pole", shade(rng, (0.42, 0.25, 0.10)), 0.6, pattern="grain", density=450)
     weave, r = cane(rng), 0.015
@@ -169,13 +163,12 @@ LIFTS = {"track": 0.05, "legs": 0.15, "roll": 0.09, "chesterfield": 0.1, "camelb
 REST = (1.2, 1.45, 1.5, 1.4, 1.2)  # widths along a wooden arm, in those of its post
 
 
-def sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a sofa: square, slim or rolled arms, a buttoned Chesterfield, a camel's back, a wooden frame, a low cloud, or curved ends."""
     if form == "tub":
-        return lounge_chair(rng, "tub", size, scheme)
+        return lounge_chair(rng, "tub", w, d, h, scheme)
     if form == "frame":
-        return Shape(_frame_sofa(rng, size, scheme))
-    w, d, h = size
+        return Shape(_frame_sofa(rng, w, d, h, scheme))
     seats = max(1, round((w - 0.4) / (0.72 if form != "cloud" else 0.95)))
     seat = float(rng.uniform(0.40, 0.44)) * min(1.0, h / 0.78) * (0.92 if form == "cloud" else 1.0)
     arm, lift = ARMS[form] * min(1.0, w / 0.85), LIFTS[form]
@@ -290,9 +283,8 @@ def _returns(w: float, d: float, front: float, lift: float, top: float, seat: fl
     return parts
 
 
-def _frame_sofa(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _frame_sofa(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Loose cushions in an open frame of wood with laths behind them."""
-    w, d, h = size
     x, y = w / 2, d / 2
     seat = 0.42 * min(1.0, h / 0.78)
     t = 0.045 * scheme.manner.slim
@@ -323,9 +315,8 @@ def _frame_sofa(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("back_cushions", lean(pads, seat - 0.02, slope), scheme.soft)
 
 
-def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def l_shaped_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a sofa along the back and a chaise that reaches forward at one end (`form`: left or right, seen from the front)."""
-    w, d, h = size
     style = one_of(rng, ("track", "legs", "cloud"))
     lift, arm, deep = LIFTS[style], ARMS[style] * 1.1, 0.2
     seat = 0.43 * min(1.0, h / 0.78)
@@ -356,9 +347,8 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     return Shape(parts)
 
 
-def lazy_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def lazy_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bean bag in the shape of a drop, or a soft block seat with a rolled back."""
-    w, d, h = size
     x, y = w / 2, d / 2
     if form == "bean":
         steps = ((0.78, 0.0), (0.92, 0.08), (0.99, 0.2), (1.0, 0.32), (0.94, 0.5), (0.78, 0.7), (0.55, 0.87), (0.3, 0.97), (0.14, 1.0))
@@ -370,9 +360,8 @@ def lazy_sofa(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return Shape(parts + pieces("bolster", bolster(around(0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), scheme.second))
 
 
-def chaise_longue(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def chaise_longue(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a long seat with a raised back and one arm, or a scrolled recamier."""
-    w, d, h = size
     x, y = w / 2, d / 2
     seat = 0.42 * min(1.0, h / 0.8)
     kind = draw_kind(rng, scheme, "plank cross sled hairpin")

@@ -9,7 +9,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, Feet, case
 from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Scheme, pick, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, HandleStyle, PanelStyle
 from pipeline.corpus.furniture.intervals import Interval
-from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import rod
 
 
@@ -38,30 +38,30 @@ def case_style(rng: np.random.Generator, scheme: Scheme, style: FrontStyle, feet
     )
 
 
-def nightstand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def nightstand(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """One column: drawers, a drawer over a shelf, or a drawer over a door."""
     style = front_style(rng, scheme)
-    how = case_style(rng, scheme, style, "tapered square sled plinth hairpin", (0.07, min(0.2, 0.35 * size[2])))
+    how = case_style(rng, scheme, style, "tapered square sled plinth hairpin", (0.07, min(0.2, 0.35 * h)))
     if form == "drawers":
-        count = 2 if size[2] - how.feet_height < 0.5 else 3
+        count = 2 if h - how.feet_height < 0.5 else 3
         cells = (Cell("drawer"),) * count
     elif form == "shelf_drawer":
         cells = (Cell("drawer", 1.0), Cell("open", float(rng.uniform(0.9, 1.6))))
     else:
         cells = (Cell("drawer", 0.6), Cell("left" if rng.random() < 0.5 else "right", 1.2, 1))
-    return case(size, [Column(1, cells)], how)
+    return case((w, d, h), [Column(1, cells)], how)
 
 
-def wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def wardrobe(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build columns of doors with a rail behind, over drawers or beside shelves, or sliding doors on two tracks."""
     style = front_style(rng, scheme)
     how = replace(case_style(rng, scheme, style, "plinth plinth square none", (0.08, 0.12)), board=0.02)
     if form in ("sliding", "sliding_mirror"):
-        return _sliding_wardrobe(rng, form, size, scheme, how)
-    count = max(1, round(size[0] / 0.95))
+        return _sliding_wardrobe(rng, form, w, d, h, scheme, how)
+    count = max(1, round(w / 0.95))
     inner = int(rng.integers(2, 4)) if form == "inner_drawers" else 0
     doors: tuple[Cell, ...] = (Cell("pair", 3.6, 1, inner=inner),)
-    if form == "top_boxes" and size[2] > 2.0:
+    if form == "top_boxes" and h > 2.0:
         doors = (Cell("pair", 0.7), Cell("pair", 3.0, 1))
     if form == "doors_drawers":
         doors = (*doors, *(Cell("drawer", 0.42) for _ in range(int(rng.integers(1, 3)))))
@@ -69,22 +69,22 @@ def wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     if form == "mirror":
         mirror = replace(style, panel="mirror", handle="knob" if style.handle == "knob" else "edge")
         columns[count // 2] = Column(1.0, (replace(doors[0], panel=mirror), *doors[1:]))
-    if form == "doors_open" and size[0] > 1.2:
+    if form == "doors_open" and w > 1.2:
         shelves = Column(0.45, (Cell("open", 1.0, 3), Cell("drawer", 0.3), Cell("drawer", 0.3)))
         columns.insert(int(rng.integers(0, 2)) * len(columns), shelves)
-    elif size[0] / count < 0.6:
+    elif w / count < 0.6:
         columns = [Column(1.0, (Cell("left", 3.6, 1), *doors[1:]))]
-    shape = case(size, columns, how)
+    shape = case((w, d, h), columns, how)
     return Shape(shape.base + _rails(shape, scheme), shape.movers)
 
 
-def _sliding_wardrobe(rng: np.random.Generator, form: str, size: Size, scheme: Scheme, how: Case) -> Shape:
+def _sliding_wardrobe(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme, how: Case) -> Shape:
     """Build leaves that pass each other between the sides, plain or with mirrors."""
     looks = replace(how.style, panel="mirror" if form == "sliding_mirror" else how.style.panel, handle="none", thickness=0.022)
     if looks.panel in ("raised", "slats"):
         looks = replace(looks, panel="slab")
     how = replace(how, style=looks, inset=True, overhang=0.0, feet="plinth", feet_height=0.05, feet_finish=scheme.body)
-    shape = case(size, [Column(1.0, (Cell("slide", 1.0, int(rng.integers(2, 5))),))], how)
+    shape = case((w, d, h), [Column(1.0, (Cell("slide", 1.0, int(rng.integers(2, 5))),))], how)
     return Shape(shape.base + _rails(shape, scheme), shape.movers)
 
 
@@ -100,26 +100,26 @@ def _rails(shape: Shape, scheme: Scheme) -> Pieces:
     return tuple(rails)
 
 
-def cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a chest: a grid of drawers, wide or small, a tallboy, drawers over doors, or doors."""
     how = case_style(rng, scheme, front_style(rng, scheme), "tapered square sled plinth", (0.08, 0.18))
-    inner = size[2] - how.feet_height
-    count = max(1, min(3, round(size[0] / 0.55)))
+    inner = h - how.feet_height
+    count = max(1, min(3, round(w / 0.55)))
     rows = max(2, min(6, round(inner / 0.22)))
     if form == "tallboy":
         columns = [Column(1, (Cell("drawer", 0.75), *(Cell("drawer"),) * (rows - 1)))]
     elif form == "apothecary":
-        columns = [Column(1, (Cell("drawer"),) * max(2, min(3, round(inner / 0.28))))] * max(2, min(4, round(size[0] / 0.36)))
+        columns = [Column(1, (Cell("drawer"),) * max(2, min(3, round(inner / 0.28))))] * max(2, min(4, round(w / 0.36)))
     elif form == "drawers":
         rows = min(rows, 12 // count)
         small = rows >= 4 and count >= 2  # a row of small drawers on top of wide ones
         columns = [Column(1, (Cell("drawer", 0.7 if small else 1.0), *(Cell("drawer"),) * (rows - 1)))] * count
     elif form == "mixed":
-        columns = [Column(1, (Cell("drawer", 0.5), doors_of(rng, size[0] / count, 1.5, 1))) for _ in range(count)]
+        columns = [Column(1, (Cell("drawer", 0.5), doors_of(rng, w / count, 1.5, 1))) for _ in range(count)]
         columns[0] = Column(1, (Cell("drawer"),) * rows)
     else:
-        columns = [Column(1, (doors_of(rng, size[0] / count, 1.0, max(1, rows // 2)),)) for _ in range(count)]
-    return case(size, columns, how)
+        columns = [Column(1, (doors_of(rng, w / count, 1.0, max(1, rows // 2)),)) for _ in range(count)]
+    return case((w, d, h), columns, how)
 
 
 def doors_of(rng: np.random.Generator, width: float, share: float, shelves: int) -> Cell:
@@ -129,7 +129,7 @@ def doors_of(rng: np.random.Generator, width: float, share: float, shelves: int)
     return Cell("left" if rng.random() < 0.5 else "right", share, shelves)
 
 
-def children_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def children_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Cubes, open and closed, or doors over drawers, in two gay colours."""
     names = sorted({"mint", "dusty_blue", "blush", "mustard", "white"})
     first, second = (str(n) for n in rng.choice(names, 2, replace=False))
@@ -137,11 +137,11 @@ def children_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Sc
     style = FrontStyle("slab", "knob", gay[0], scheme.accent)
     other = replace(style, finish=gay[1])
     how = replace(case_style(rng, scheme, style, "plinth square", (0.06, 0.1)), body=scheme.body)
-    count = max(1, min(4, round(size[0] / 0.5)))
-    rows = max(2, min(5, round(size[2] / 0.42)))
+    count = max(1, min(4, round(w / 0.5)))
+    rows = max(2, min(5, round(h / 0.42)))
     if form == "doors_drawers":
-        cells = (Cell("pair" if size[0] / count > 0.5 else "left", 1.4, 2), Cell("drawer", 0.4, 0, other), Cell("drawer", 0.4))
-        return case(size, [Column(1, cells)] * count, how)
+        cells = (Cell("pair" if w / count > 0.5 else "left", 1.4, 2), Cell("drawer", 0.4, 0, other), Cell("drawer", 0.4))
+        return case((w, d, h), [Column(1, cells)] * count, how)
     columns = []
     for i in range(count):
         kinds = ["open"] * rows
@@ -149,38 +149,36 @@ def children_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Sc
             kinds[int(rng.integers(0, rows))] = "left" if i < count / 2 else "right"
             kinds[-1] = "drawer"
         columns.append(Column(1, tuple(Cell(k, 1.0, 0, other if (i + j) % 2 else None) for j, k in enumerate(kinds))))  # type: ignore[arg-type]
-    return case(size, columns, how)
+    return case((w, d, h), columns, how)
 
 
-def sideboard(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def sideboard(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a low row of doors, hinged or sliding, doors around drawers, or a console; tall ones carry a glazed hutch."""
     style = front_style(rng, scheme)
-    w, _, h = size
     count = max(2, min(4, round(w / 0.5)))
     if form == "console" and h < 1.15:
         how = case_style(rng, scheme, style, "square sled tapered", (0.62 * h, 0.72 * h))
-        return case(size, [Column(1, (Cell("drawer"),)) for _ in range(max(1, count - 1))], how)
+        return case((w, d, h), [Column(1, (Cell("drawer"),)) for _ in range(max(1, count - 1))], how)
     how = case_style(rng, scheme, style, "tapered square sled plinth", (0.09, 0.2))
     if h > 1.35:
         glass = replace(style, panel="glass")
         upper, lower = Cell("pair", 1.3, 2, glass), Cell("pair", 0.8, 1)
-        return case(size, [Column(1, (upper, Cell("drawer", 0.25), lower)) for _ in range(max(1, round(w / 0.8)))], how)
+        return case((w, d, h), [Column(1, (upper, Cell("drawer", 0.25), lower)) for _ in range(max(1, round(w / 0.8)))], how)
     columns = [Column(1, (Cell("left" if i < count / 2 else "right", 1, 1),)) for i in range(count)]
     if form == "sliding" and not how.inset:
         how = replace(how, inset=True, overhang=0.0)
     if form == "sliding":
         looks = replace(style, handle="none", panel="slab" if style.panel in ("raised", "slats") else style.panel)
-        return case(size, [Column(1, (Cell("slide", 1, 1),))], replace(how, style=looks))
+        return case((w, d, h), [Column(1, (Cell("slide", 1, 1),))], replace(how, style=looks))
     if form == "mixed":
         rows = max(2, round((h - how.feet_height) / 0.2))
         columns[count // 2] = Column(1.1, (Cell("drawer"),) * rows)
-    return case(size, columns, how)
+    return case((w, d, h), columns, how)
 
 
-def tv_stand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def tv_stand(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a long low case of drawers, doors, flaps under open shelves, or drawers and doors around an open middle."""
     style = front_style(rng, scheme)
-    w, _, h = size
     how = case_style(rng, scheme, style, "tapered sled square plinth", (0.06, min(0.18, 0.35 * h)))
     count = max(2, min(4, round(w / 0.58)))
     rows = 2 if h - how.feet_height > 0.42 else 1
@@ -195,23 +193,22 @@ def tv_stand(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
         columns = [Column(1, drawers), Column(1.3, (Cell("open", 1, 1),)), Column(1, (Cell("right", 1, 0),))]
         if count == 4:
             columns.insert(2, Column(1.3, (Cell("open", 1, 1),)))
-    return case(size, columns, how)
+    return case((w, d, h), columns, how)
 
 
-def wine_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def wine_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Glass doors over shelves, or a rack of bottles over doors."""
     style = front_style(rng, scheme, "shaker slab")
     how = case_style(rng, scheme, style, "plinth square tapered", (0.08, 0.14))
-    w, _, h = size
     count = max(1, round(w / 0.6))
     rows = max(2, round(h / 0.4))
     glass = replace(style, panel="glass")
     if form == "glass":
         door = doors_of(rng, w / count, 2.0, rows)
         columns = [Column(1, (replace(door, panel=glass), Cell("drawer", 0.35))) for _ in range(count)]
-        return case(size, columns, how)
+        return case((w, d, h), columns, how)
     columns = [Column(1, (Cell("open", 1.3, 2), doors_of(rng, w / count, 1.0, 1))) for _ in range(count)]
-    shape = case(size, columns, how)
+    shape = case((w, d, h), columns, how)
     bottles: list[Piece] = []
     for board in [p for p in shape.base if "_board_" in p.name and p.name.split("_")[1] == "0"]:
         low, high = board.solid.bounds()
@@ -226,15 +223,14 @@ def wine_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return Shape(shape.base + tuple(bottles), shape.movers)
 
 
-def shoe_cabinet(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def shoe_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Louvred doors over shelves, or flaps that tip forward."""
     style = front_style(rng, scheme, "slats shaker slab" if form == "doors" else "slab slab shaker")
     how = case_style(rng, scheme, style, "plinth square tapered", (0.06, 0.12))
-    w, _, h = size
     count = max(1, round(w / 0.8))
     if form == "doors":
         columns = [Column(1, (Cell("pair", 1, max(2, round(h / 0.25))),)) for _ in range(count)]
-        return case(size, columns, how)
+        return case((w, d, h), columns, how)
     rows = max(2, round((h - how.feet_height) / 0.38))
-    shape = case(size, [Column(1, (Cell("flap"),) * rows)] * count, how)
+    shape = case((w, d, h), [Column(1, (Cell("flap"),) * rows)] * count, how)
     return Shape(shape.base, tuple(replace(m, upper=math.radians(50)) for m in shape.movers))

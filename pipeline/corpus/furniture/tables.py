@@ -12,7 +12,7 @@ from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
 from pipeline.corpus.furniture.fronts import Rect, frame
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, polar, split
 from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs, pedestal
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, join_shapes, pieces, translate
+from pipeline.corpus.furniture.shape import Pieces, Shape, join_shapes, pieces, translate
 from pipeline.corpus.furniture.solids import Solid, beam, board, box, circle, revolve, ring, rod, rounded_rectangle, slab, standing
 from pipeline.corpus.furniture.storage import case_style, front_style
 
@@ -42,9 +42,8 @@ def top(edge: NDArray[np.float64], z: Interval, scheme: Scheme) -> list[Solid]:
     return [slab(edge * 0.965, (z[0], cut), 0.003), slab(edge, (cut, z[1]), min(ease, 0.4 * (z[1] - cut)))]
 
 
-def legged_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, without: str = "") -> Shape:
+def legged_table(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme, *, without: str = "") -> Shape:
     """Build a top on legs of the style's form, joined by rails between them."""
-    w, d, h = size
     t = float(rng.uniform(0.022, 0.036)) * min(scheme.manner.slim, 1.15)
     kind = draw_kind(rng, scheme, without + (" bun" if h > 0.3 else ""))
     material = top_finish(rng, scheme)
@@ -71,12 +70,11 @@ def rails(half: Spot, z: Interval, gap: float) -> list[Solid]:
     return along + [box(around(0.01, s * x), around(y - gap), z, 0.002) for s in (-1, 1)]
 
 
-def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def dining_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Four legs, slab sides, a crossed base, a tulip foot, a drum, or a bar."""
-    w, d, h = size
     t = float(rng.uniform(0.026, 0.042))
     if form == "legs":
-        return legged_table(rng, size, scheme, without="block")
+        return legged_table(rng, w, d, h, scheme, without="block")
     material = top_finish(rng, scheme, stone=1.8)
     under = h - t
     if form in ("tulip", "drum"):
@@ -86,7 +84,7 @@ def dining_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
         return Shape(parts + pieces("pedestal", trumpet(0.32 * w, under), scheme.front))
     parts = pieces("top", top(outline(rng, scheme, w, d), (under, h), scheme), material)
     if form == "bar":
-        return Shape(parts + _bar(size, t, scheme))
+        return Shape(parts + _bar(w, d, h, t, scheme))
     if form == "cross":
         solids = [
             beam((s * (0.30 * w + dx), y, 0), (s * (0.14 * w * 0.4 + dx), y_top, under - 0.02), 0.06, 0.05)
@@ -115,9 +113,8 @@ def fluted_drum(radius: float, height: float, scheme: Scheme) -> Pieces:
     return pieces("drum", revolve([(radius, 0.0), (radius, height)], 24), scheme.body) + pieces("staves", staves, scheme.body)
 
 
-def _bar(size: Size, t: float, scheme: Scheme) -> Pieces:
+def _bar(w: float, d: float, h: float, t: float, scheme: Scheme) -> Pieces:
     """Return a counter's front of upright boards on a plinth, a shelf behind it and a foot rail before it."""
-    w, d, h = size
     y, half = -0.22 * d, 0.45 * w
     boards = [box(x, (y, y + 0.02), (0.06, h - t), 0.003) for x in split(around(0.46 * w), max(5, round(w / 0.14)), 0.001)]
     sides = [box(around(0.012, s * half), (y + 0.02, 0.42 * d), (0.0, h - t), 0.002) for s in (-1, 1)]
@@ -129,21 +126,19 @@ def _bar(size: Size, t: float, scheme: Scheme) -> Pieces:
     return parts + pieces("rail", rail, scheme.handle)
 
 
-def cased_table(rng: np.random.Generator, size: Size, scheme: Scheme, *, drawer_height: float, count: int) -> Shape:
+def cased_table(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme, *, drawer_height: float, count: int) -> Shape:
     """Build a shallow case with a row of drawers on legs."""
-    w, d, h = size
     style = front_style(rng, scheme, "slab slab shaker")
     how = replace(case_style(rng, scheme, style, "tapered square sled", (0.1, 0.2)), feet_height=max(0.05, h - drawer_height - 0.04))
     return case((w, d, h), [Column(1, (Cell("drawer"),)) for _ in range(count)], how)
 
 
-def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def coffee_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Legs with a lower shelf, a case with drawers, or a round tray."""
-    w, d, h = size
     if form == "drawer":
-        return cased_table(rng, size, scheme, drawer_height=min(0.13, 0.42 * h), count=2 if w > 0.9 else 1)
+        return cased_table(rng, w, d, h, scheme, drawer_height=min(0.13, 0.42 * h), count=2 if w > 0.9 else 1)
     if form == "legs":
-        shape = legged_table(rng, size, scheme, without="block plank")
+        shape = legged_table(rng, w, d, h, scheme, without="block plank")
         if h <= 0.3 or rng.random() >= 0.5:
             return shape
         lower = board(around(0.36 * w), around(0.34 * d), (0.26 * h, 0.26 * h + 0.016), 0.02, 2, 0.003)
@@ -156,13 +151,12 @@ def coffee_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return Shape(parts + pieces("legs", legs(kind, half, under, 0.04), leg_finish(scheme, kind)))
 
 
-def corner_side_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def corner_side_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Legs with a shelf, a pedestal or a drawer."""
-    w, d, h = size
     if form == "drawer":
-        return cased_table(rng, size, scheme, drawer_height=0.12, count=1)
+        return cased_table(rng, w, d, h, scheme, drawer_height=0.12, count=1)
     if form == "legs":
-        shape = legged_table(rng, size, scheme, without="block plank")
+        shape = legged_table(rng, w, d, h, scheme, without="block plank")
         if rng.random() >= 0.55:
             return shape
         lower = board(around(0.34 * w), around(0.32 * d), (0.3 * h, 0.3 * h + 0.014), 0.02, 2, 0.003)
@@ -171,9 +165,8 @@ def corner_side_table(rng: np.random.Generator, form: str, size: Size, scheme: S
     return Shape(parts + pieces("pedestal", pedestal(rng, scheme, 0.36 * w, h - 0.024), scheme.accent))
 
 
-def round_end_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Three splayed legs, a drum with an open side, a tulip foot, or a tray on a tripod."""
-    w, _, h = size
     material = top_finish(rng, scheme, stone=1.4)
     under = h - (0.035 if form == "tray" else 0.022)
     if form == "drum":
@@ -199,16 +192,15 @@ def round_end_table(rng: np.random.Generator, form: str, size: Size, scheme: Sch
     return Shape(parts)
 
 
-def desk(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def desk(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a desk with a pedestal of drawers, a row of drawers, or a plain top; tall ones carry a shelf at the back."""
-    w, d, h = size
     work = min(h, 0.78) if h > 0.95 else h
     if form == "pedestal":
-        shape = _pedestal_desk(rng, (w, d, work), scheme)
+        shape = _pedestal_desk(rng, w, d, work, scheme)
     elif form == "drawers":
-        shape = cased_table(rng, (w, d, work), scheme, drawer_height=0.11, count=2 if w < 1.5 else 3)
+        shape = cased_table(rng, w, d, work, scheme, drawer_height=0.11, count=2 if w < 1.5 else 3)
     else:
-        table = legged_table(rng, (w, d, work), scheme, without="block bun horse")
+        table = legged_table(rng, w, d, work, scheme, without="block bun horse")
         panel = box(around(0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05))
         shape = Shape(table.base + pieces("modesty", panel, scheme.body))
     if h - work > 0.1:
@@ -231,9 +223,8 @@ def _hutch(w: float, d: float, z: Interval, scheme: Scheme) -> Pieces:
     return parts
 
 
-def _pedestal_desk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shape:
+def _pedestal_desk(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a top on a chest of drawers at one side and a panel or a frame at the other."""
-    w, d, h = size
     t = 0.028
     style = front_style(rng, scheme, "slab slab shaker")
     side = -1 if rng.random() < 0.5 else 1
@@ -256,11 +247,10 @@ def _pedestal_desk(rng: np.random.Generator, size: Size, scheme: Scheme) -> Shap
     return join_shapes(Shape(base), translate(chest, (side * (w / 2 - 0.02 - wide / 2), 0.0, 0.0), "pedestal_"))
 
 
-def dressing_table(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def dressing_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a table with drawers and a mirror that stands at its back."""
-    w, d, h = size
     work = h if h < 0.95 else min(0.8, 0.62 * h)
-    table = cased_table(rng, (w, d, work), scheme, drawer_height=0.12, count=2 if w > 0.9 else 1)
+    table = cased_table(rng, w, d, work, scheme, drawer_height=0.12, count=2 if w > 0.9 else 1)
     if h - work < 0.2:
         return table
     y = d / 2 - 0.05

@@ -21,7 +21,7 @@ from pipeline.corpus.furniture.finishes import (
 )
 from pipeline.corpus.furniture.fronts import Rect, lid
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, polar
-from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, Size, pieces, staves
+from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, pieces, staves
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab, stack, walls
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
@@ -48,9 +48,8 @@ def vessel(profile: list[Spot], wall: float, floor: float, n: int) -> list[Solid
     return solids
 
 
-def cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a mug with a handle, a tumbler of glass, or a bowl-shaped tea cup."""
-    w, d, h = size
     finish = glaze(rng)
     if form == "tumbler":
         return Shape(pieces("cup", vessel([(0.40 * w, 0.0), (0.5 * w, h)], 0.003, 0.006, 24), "clear_glass"))
@@ -65,9 +64,8 @@ def cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     return Shape(pieces("cup", body, finish) + pieces("handle", grip, finish))
 
 
-def plate(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def plate(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a flat plate, or a deep one, with a rim."""
-    w, _, h = size
     r = w / 2
     finish = glaze(rng) if rng.random() < 0.6 else "ceramic"
     well = 0.64 if form == "flat" else 0.52
@@ -75,18 +73,16 @@ def plate(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     return Shape(low + pieces("rim", ring((well * r, r), (well * r - 0.003, r - 0.01), (0.3 * h, h), 24), finish))
 
 
-def bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bowl of pottery or wood."""
-    w, _, h = size
     r = w / 2
     finish = Finish("turned_wood", shade(rng, WOODS["beech"]), 0.5, pattern="grain", density=650) if form == "wood" else glaze(rng)
     profile = [(0.42 * r, 0.0), (0.78 * r, 0.32 * h), (0.95 * r, 0.7 * h), (r, h)]
     return Shape(pieces("bowl", vessel(profile, 0.006, 0.08 * h, 24), finish))
 
 
-def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def vase(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bottle, a bellied or an upright vase, some with twigs in it."""
-    w, d, h = size
     finish = glaze(rng)
     tall, share, n = (0.55 * h, 0.42, 16) if form == "twigs" else (h, 1.0, 24)
     r = min(w, d) / 2 * share
@@ -95,12 +91,11 @@ def vase(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     base = pieces("vase", revolve(curve(lower, 3).tolist(), n), finish)
     for (r0, z0), (r1, z1) in itertools.pairwise(upper):
         base += pieces("neck", ring((r0, r1), (0.78 * r0, 0.78 * r1), (z0, z1), n), finish)
-    return Shape(base + _twigs(rng, size, tall) if form == "twigs" else base)
+    return Shape(base + _twigs(rng, w, d, h, tall) if form == "twigs" else base)
 
 
-def _twigs(rng: np.random.Generator, size: Size, tall: float) -> Pieces:
+def _twigs(rng: np.random.Generator, w: float, d: float, h: float, tall: float) -> Pieces:
     """Return twigs with leaves that stand in a vase, `tall` [m]."""
-    w, d, h = size
     stems: list[Solid] = []
     roots, tips = [], []
     count = int(rng.integers(4, 7))
@@ -133,9 +128,8 @@ def flat_book(rng: np.random.Generator, x: Interval, y: Interval, z: Interval) -
     return parts + pieces("pages", box((x[0] + t, x[1] - 0.004), inset(y, 0.004), inset(z, t)), "paper")
 
 
-def book(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def book(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a book that lies, stands upright, or lies open."""
-    w, d, h = size
     if form != "open":
         return Shape(flat_book(rng, around(w / 2), around(d / 2), (0.0, h)))
     t = min(0.0035, 0.2 * h)
@@ -148,9 +142,8 @@ def book(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     return Shape(parts)
 
 
-def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def book_stack(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a pile of books, or a row of upright ones."""
-    w, d, h = size
     parts: Pieces = ()
     if form == "row":
         x = -w / 2
@@ -174,9 +167,8 @@ def book_stack(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     return Shape(parts)
 
 
-def basket(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def basket(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a woven basket, round or square, with two handles."""
-    w, d, h = size
     straw = Finish("straw", shade(rng, (0.52, 0.36, 0.18)), 0.9, pattern="cane", density=300, second=(0.22, 0.14, 0.07))
     body = h - 0.03
     top = body + 0.015
@@ -203,9 +195,8 @@ def tray_walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0
     return [box(x, y, (z[0], z[0] + t), bevel), *walls(x, y, (z[0] + t, z[1]), t, bevel)]
 
 
-def trash_can(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def trash_can(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bin: round with a pedal, square, with a lid that slides, or with one that swings in a hood."""
-    w, d, h = size
     finish = draw_material(rng, "steel", "plastic", Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))
     top = h - 0.035
     cover_finish = finish if pick(rng, "same dark") == "same" else "plastic"
@@ -254,12 +245,11 @@ def _swing_bin(x: Interval, y: Interval, h: float, finish: Material, hood: Mater
     return Shape(base + pieces("hood", over, hood), (mover,))
 
 
-def storage_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def storage_box(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a box: a hinged lid with a latch strip, four flaps of cardboard, or a lid that slides off."""
-    w, d, h = size
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     if form == "flaps":
-        return _carton(size)
+        return _carton(w, d, h)
     finish = scheme.body if form == "slide" or rng.random() < 0.5 else Finish("box_lacquer", scheme.front.color, 0.5, density=600)
     t = 0.009
     if form == "slide":
@@ -283,9 +273,8 @@ def storage_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme)
     return Shape(base, (lid("lid", lid_parts, (0.0, y[1], low + 0.002), math.radians(100)),))
 
 
-def _carton(size: Size) -> Shape:
+def _carton(w: float, d: float, h: float) -> Shape:
     """Return a carton: two long flaps meet over two short ones, which wait for them."""
-    w, d, h = size
     x, y, t = (-w / 2, w / 2), (-d / 2, d / 2), 0.008
     low = h - 2 * t - 0.003
     base = pieces("walls", tray_walls(x, y, (0.0, low), t), "cardboard")

@@ -22,7 +22,7 @@ from pipeline.corpus.furniture.finishes import (
     shade,
 )
 from pipeline.corpus.furniture.intervals import Interval, around, inset, split
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, board, box, circle, cushion, pillow, ring, rod, rounded_rectangle, slab, standing
 
 SEAM = 0.007  # height of a piping
@@ -100,9 +100,8 @@ def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: 
     return pieces("duvet", solids, cloth)
 
 
-def rug(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a woven rug: bordered, with diamonds, striped, plain with a deep pile, or round; some with fringes."""
-    w, d, h = size
     classic = scheme.style in (*CLASSIC, *ORIENTAL)
     pattern: Pattern = pick(rng, "rug_border" if classic else "rug_diamonds rug_stripes rug_border boucle")  # type: ignore[assignment]
     if form == "round":
@@ -126,9 +125,8 @@ def rug(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     return Shape(parts)
 
 
-def curtain(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def curtain(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build curtains on a rod with knobs and rings: two panels drawn aside, or one sheet over the whole width."""
-    w, d, h = size
     cloth = scheme.soft if "leather" not in scheme.soft.pattern else cover(rng, "linen")
     rod_z = h - 0.03
     bar = [rod((-w / 2 + 0.03, 0, rod_z), (w / 2 - 0.03, 0, rod_z), 0.012, n=8)]
@@ -155,9 +153,8 @@ def _panel(start: float, end: float, d: float, h: float, cloth: Material) -> Pie
     return pieces("cloth", band(path, 0.006, (0.0, h)), cloth)
 
 
-def cushion_pillow(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def cushion_pillow(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a throw pillow: square or oblong, or a round one."""
-    w, d, h = size
     cloth = scheme.second if rng.random() < 0.5 else scheme.soft
     if form == "round":
         rims: list[Solid] = ring((0.44 * w, 0.5 * w), (0.2 * w, 0.2 * w), (0.0, 0.5 * h), 20)
@@ -177,9 +174,8 @@ def terry(rng: np.random.Generator, scheme: Scheme) -> Finish:
     return Finish("terry", shade(rng, color, 0.08), 0.95, pattern="boucle", density=150)
 
 
-def towel(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def towel(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a towel over a rail, two of them side by side, or one through a ring; the back is at the wall (+y)."""
-    w, d, h = size
     cloth, metal = terry(rng, scheme), scheme.handle
     if form == "ring":
         plate = box((-0.025, 0.025), (d / 2 - 0.012, d / 2), (h - 0.06, h - 0.01), 0.003)
@@ -215,9 +211,8 @@ def _towel_over_bar(x: Interval, d: float, top: float, drop: float, cloth: Finis
     return pieces("towel", falls, cloth) + pieces("hem", band, hem)
 
 
-def folded_towels(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def folded_towels(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a pile of folded towels, or three rolled ones."""
-    w, d, h = size
     parts: Pieces = ()
     if form == "rolled":
         r = min(w / 4, h / 3.6)
@@ -237,9 +232,8 @@ def folded_towels(rng: np.random.Generator, form: str, size: Size, scheme: Schem
     return Shape(parts)
 
 
-def throw(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def throw(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a folded blanket with fringes at one side."""
-    w, d, h = size
     pattern = pick(rng, "knit check stripe boucle")
     cloth = Finish("throw", shade(rng, scheme.second.color, 0.1), 0.95, pattern=pattern, density=120)  # type: ignore[arg-type]
     layers = [cushion(around(w / 2), (-d / 2 + 0.04, d / 2), z, 0.4 * h / 3, 2) for z in split((0.0, h), 3)]
@@ -249,9 +243,8 @@ def throw(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     return Shape(pieces("throw", layers, cloth) + pieces("yarn", ends, yarn))
 
 
-def bath_mat(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def bath_mat(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bath mat: of terry with a border, or of wooden slats."""
-    w, d, h = size
     if form == "slats":
         count = max(5, round(w / 0.09))
         step = w / count
@@ -266,9 +259,8 @@ def bath_mat(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) ->
     )
 
 
-def blind(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def blind(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a blind: a roller with its cloth, a pleated Roman one, or slats; the back is at the wall (+y)."""
-    w, d, h = size
     color = FABRICS[pick(rng, "cream_cloth linen grey_cloth snow_cloth taupe_cloth")]
     cloth = Finish("blind", shade(rng, color, 0.06), 0.9, pattern="weave", density=300)
     top = h - 0.05
@@ -290,9 +282,8 @@ def blind(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sh
     return Shape(pieces("rail", rail, timber) + pieces("slats", slats, timber) + pieces("cords", cords, cloth))
 
 
-def paper_holder(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def paper_holder(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a roll of paper on an arm, or on one under a lid; the back is at the wall (+y)."""
-    w, d, h = size
     r = 0.42 * h
     arm = [
         box((-w / 2, -w / 2 + 0.014), (d / 2 - 0.012, d / 2), (0.3 * h, 0.9 * h), 0.002),

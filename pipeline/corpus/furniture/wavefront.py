@@ -20,11 +20,20 @@ def mesh_frame(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """The pieces of one OBJ group, all of one material `material`."""
+    """The pieces of one OBJ group, all of one finish, which the material library calls `material`."""
 
     name: str
     material: str
+    finish: Finish
     pieces: Pieces
+
+
+def group_by_finish(pieces: Iterable[Piece], name: str) -> list[Group]:
+    """Return pieces in groups, one for each finish; `name` of a group, with its number where there is a field for it."""
+    members: dict[Finish, list[Piece]] = {}
+    for piece in pieces:
+        members.setdefault(piece.finish, []).append(piece)
+    return [Group(name.format(k + 1), f"{f.name}_{k}", f, tuple(parts)) for k, (f, parts) in enumerate(members.items())]
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,28 +119,24 @@ def bare(name: str, solids: Sequence[Solid]) -> Text:
     return Text("", np.concatenate([mesh_frame(s.vertices) for s in solids]), "".join(lines))
 
 
-def material_name(finish: Finish, number: int) -> str:
-    """Return a material's name in an MTL file."""
-    return f"{finish.name}_{number}"
-
-
-def mtl(finishes: Iterable[tuple[str, Finish]], texture: str | None = None) -> bytes:
+def mtl(groups: Iterable[Group], texture: str) -> bytes:
     """Return an MTL file; Kd is sRGB as in the real sets, Ns the Blinn-Phong exponent 2 / roughness^4 - 2.
 
     Metals say so by Pm, of the usual extension of MTL for physically based surfaces.
     """
     lines = []
-    for name, finish in finishes:
-        shininess = min(900.0, max(1.0, 2 / finish.roughness**4 - 2))
-        lines += [f"newmtl {name}", "illum 2", "Ka 0 0 0", "Kd {:g} {:g} {:g}".format(*srgb(finish.color))]
+    for group in groups:
+        finish = group.finish
+        gloss = 0.5 if finish.metallic else 0.1
+        lines += [f"newmtl {group.material}", "illum 2", "Ka 0 0 0", "Kd {:g} {:g} {:g}".format(*srgb(finish.color))]
         lines += [
-            f"Ks {0.5 if finish.metallic else 0.1:g} {0.5 if finish.metallic else 0.1:g} {0.5 if finish.metallic else 0.1:g}",
-            f"Ns {shininess:.1f}",
+            f"Ks {gloss:g} {gloss:g} {gloss:g}",
+            f"Ns {min(900.0, max(1.0, 2 / finish.roughness**4 - 2)):.1f}",
             f"d {finish.opacity:g}",
         ]
         if finish.metallic:
             lines.append(f"Pm {finish.metallic:g}")
-        if texture and finish.opacity == 1.0:
+        if finish.opacity == 1.0:
             lines.append(f"map_Kd {texture}")
         lines.append("")
     return "\n".join(lines).encode()
