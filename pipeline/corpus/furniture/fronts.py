@@ -146,8 +146,6 @@ def _reeds(rect: Rect, proud: float) -> list[Solid]:
     return strips
 
 
-__all__ = ["FrontStyle", "HandleStyle", "PanelStyle", "Rect", "button", "door", "drawer", "handle", "knob", "lid", "panel", "sliding_door"]
-
 Side = Literal["left", "right", "bottom", "top"]
 
 GAP = 0.003  # between a front and its neighbours [m]

@@ -1,6 +1,6 @@
 """Shapes: pieces of convex solids on a base and on movers, before they become an asset or files."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -134,9 +134,7 @@ def fit_to_size(shape: Shape, size: Vector) -> Shape:
     for mover in shape.movers:
         x, y, z = ((np.asarray(mover.origin) + offset) * factors).tolist()
         stretch = float(np.abs(np.asarray(mover.axis)) @ factors) if mover.type == "prismatic" else 1.0
-        placed.append(
-            replace(mover, pieces=place(mover.pieces), origin=(x, y, z), upper=mover.upper * stretch)
-        )
+        placed.append(replace(mover, pieces=place(mover.pieces), origin=(x, y, z), upper=mover.upper * stretch))
     return Shape(place(shape.base), tuple(placed))
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pipeline import seeds
 from pipeline.corpus.furniture.finishes import Finish, Pattern
 from pipeline.corpus.furniture.shape import Piece
+from pipeline.corpus.furniture.solids import Topology
 from pipeline.rendering.palette import display
 from pipeline.style import Color
 
@@ -249,17 +250,20 @@ class Atlas:
     height: int
     scale: float
 
-    def uv(self, pieces: Sequence[Piece], corners: Corners) -> NDArray[np.float64]:
-        """Return the texture coordinates (C, 2) of the corners of pieces.
+    def uv(self, pieces: Sequence[Piece], points: NDArray[np.float64], faces: Topology, side: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return the texture coordinates (C, 2) of the corners of pieces' faces, whose vertices are `points` (V, 3) [m].
 
-        A face is seen along one axis; the longer extent of its piece across that axis lies along the grain (v). Pieces lie at
-        different places of their finish's field, by their place in the list.
+        A face is seen along one axis, `side` (C,); the longer extent of its piece across that axis lies along the grain (v). Pieces lie
+        at different places of their finish's field, by their place in the list.
         """
         index = {finish: k for k, finish in enumerate(self.finishes)}
         of = np.array([index[piece.finish] for piece in pieces])
         whole, plain = (np.array([test(f.pattern) for f in self.finishes])[of] for test in (WHOLE.__contains__, "plain".__eq__))
         field = np.array([(f.x, f.y, f.width, f.height) for f in self.fields], float)[of]
-        low, extent = corners.low, corners.high - corners.low
+        counts = [len(piece.solid.vertices) for piece in pieces]
+        firsts = np.cumsum([0, *counts[:-1]])
+        low = np.minimum.reduceat(points, firsts)
+        extent = np.maximum.reduceat(points, firsts) - low
         scale = np.where(plain, (PLAIN - 2 * MARGIN) / np.maximum(extent.max(axis=1), 1e-9), self.scale)
         number = np.arange(len(pieces))[:, None]
         axes, starts = np.empty((len(pieces), 3, 2), np.int64), np.empty((len(pieces), 3, 2))
@@ -270,23 +274,9 @@ class Atlas:
             room = field[:, 2:] - 2 * MARGIN - scale[:, None] * np.take_along_axis(extent, axes[:, axis], axis=1)
             place = np.concatenate([number * GOLDEN + 0.3 * axis, number * GOLDEN**2 + 0.7 * axis], axis=1) % 1
             starts[:, axis] = field[:, :2] + MARGIN + np.where(whole[:, None], 0.0, np.maximum(room, 0)) * place
-        piece, side = corners.piece, corners.axis
-        local = np.take_along_axis(corners.points - low[piece], axes[piece, side], axis=1) * scale[piece, None]
+        piece = np.repeat(np.arange(len(pieces)), counts)[faces.corners]
+        local = np.take_along_axis(points[faces.corners] - low[piece], axes[piece, side], axis=1) * scale[piece, None]
         return np.asarray((starts[piece, side] + local) / np.array([self.width, self.height]))
-
-
-@dataclass(frozen=True, slots=True)
-class Corners:
-    """The corners of faces of pieces: `points` (C, 3) [m], `piece` (C,) and `axis` (C,) that their face is seen along.
-
-    `low` and `high` (P, 3) are the pieces' bounds.
-    """
-
-    points: NDArray[np.float64]
-    piece: NDArray[np.int64]
-    axis: NDArray[np.int64]
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
 
 
 def atlas(pieces: Iterable[Piece]) -> Atlas:

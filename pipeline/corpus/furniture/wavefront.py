@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.shape import Piece, Pieces
 from pipeline.corpus.furniture.solids import Face, Solid, Topology, merge_solids, normals, topology
-from pipeline.corpus.furniture.texture import Atlas, Corners, srgb
+from pipeline.corpus.furniture.texture import Atlas, srgb
 
 
 def mesh_frame(points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -51,22 +51,17 @@ class Text:
         return (self.header + body.replace("-0.00000", "0.00000") + self.rest).encode()
 
 
-def text(groups: Sequence[Group], library: str, sheet: Atlas | None = None) -> Text:
+def text(groups: Sequence[Group], library: str, sheet: Atlas) -> Text:
     """Return groups of solids as OBJ text: triangles and quads as they are, larger faces in fans, flat normals."""
     pieces = [piece for group in groups for piece in group.pieces]
     vertices, shared = merge_solids([piece.solid for piece in pieces])
     normal = normals(vertices, shared)
     known, index = _distinct(np.round(mesh_frame(normal), 3) + 0.0)
-    columns = [shared.corners, np.repeat(index, shared.lengths)]
-    lines = ["vn %g %g %g\n" * len(known) % tuple(known.ravel().tolist())]
-    if sheet is not None:
-        corners = corners_of(pieces, vertices, shared, normal)
-        _, first, place = np.unique(3 * shared.corners + corners.axis, return_index=True, return_inverse=True)
-        uv = sheet.uv(pieces, corners)[first]
-        columns.insert(1, place)
-        lines.insert(0, "vt %.4f %.4f\n" * len(uv) % tuple(uv.ravel().tolist()))
-    table = np.stack(columns, axis=1) + 1
-    corner = "%d//%d" if sheet is None else "%d/%d/%d"
+    side = sides_of(normal, shared)
+    _, first, place = np.unique(3 * shared.corners + side, return_index=True, return_inverse=True)
+    uv = sheet.uv(pieces, vertices, shared, side)[first]
+    table = np.stack([shared.corners, place, np.repeat(index, shared.lengths)], axis=1) + 1
+    lines = ["vt %.4f %.4f\n" * len(uv) % tuple(uv.ravel().tolist()), "vn %g %g %g\n" * len(known) % tuple(known.ravel().tolist())]
     start = 0
     for group in groups:
         lines.append(f"g {group.name}\nusemtl {group.material}\n")
@@ -77,17 +72,13 @@ def text(groups: Sequence[Group], library: str, sheet: Atlas | None = None) -> T
             start += len(topology(piece.solid.faces).corners)
         for count, parts in zip((3, 4), rows, strict=True):
             wanted = table[np.concatenate(parts)]
-            lines.append(("f" + count * f" {corner}" + "\n") * (len(wanted) // count) % tuple(wanted.ravel().tolist()))
+            lines.append(("f" + count * " %d/%d/%d" + "\n") * (len(wanted) // count) % tuple(wanted.ravel().tolist()))
     return Text(f"mtllib {library}\n", mesh_frame(vertices), "".join(lines))
 
 
-def corners_of(pieces: Sequence[Piece], vertices: NDArray[np.float64], shared: Topology, normal: NDArray[np.float64]) -> Corners:
-    """Return the corners of all faces of the pieces, each seen along the axis that its face looks along most."""
-    counts = [len(piece.solid.vertices) for piece in pieces]
-    firsts = np.concatenate([[0], np.cumsum(counts[:-1])]).astype(np.int64)
-    owner = np.repeat(np.arange(len(pieces)), counts)[shared.corners]
-    axis = np.repeat(np.argmax(np.abs(normal), axis=1), shared.lengths)
-    return Corners(vertices[shared.corners], owner, axis, np.minimum.reduceat(vertices, firsts), np.maximum.reduceat(vertices, firsts))
+def sides_of(normal: NDArray[np.float64], faces: Topology) -> NDArray[np.int64]:
+    """Return the axis (C,) along which each corner's face, of that `normal` (F, 3), looks most."""
+    return np.repeat(np.argmax(np.abs(normal), axis=1), faces.lengths)
 
 
 @functools.lru_cache(maxsize=8192)

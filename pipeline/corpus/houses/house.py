@@ -9,7 +9,7 @@ import numpy as np
 
 from pipeline import taxonomy
 from pipeline.corpus import front_statistics
-from pipeline.corpus.houses import bedrooms, dining, kitchens, living, rates, small_things
+from pipeline.corpus.houses import bedrooms, kitchens, living, rates, small_things
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.planner import BLOCK, CORRIDORS, KINDS, agenda, make_plan
 from pipeline.corpus.houses.rates import Deal
@@ -25,7 +25,7 @@ FIRST: Mapping[str, Callable[[Arranger], None]] = {  # what stands in groups, by
     "kids_room": bedrooms.furnish_bedroom,
     "living_room": lambda arranger: living.furnish_living(arranger, dining=arranger.wants("dining_too")),
     "living_dining_room": lambda arranger: living.furnish_living(arranger, dining=True),
-    "dining_room": dining.furnish_dining_corner,
+    "dining_room": living.furnish_dining_corner,
     "kitchen": kitchens.furnish_kitchen,
 }
 

@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.catalogue import catalogue, lines, styles_of
 from pipeline.corpus.furniture.finishes import MANNERS, Finish
 from pipeline.corpus.furniture.shape import frozen, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, merge_solids, normals, pillow, topology
-from pipeline.corpus.furniture.wavefront import corners_of
+from pipeline.corpus.furniture.wavefront import sides_of
 from pipeline.seeds import generator
 
 SMALL = {
@@ -206,10 +206,10 @@ def test_texture_coordinates_keep_real_sizes_and_stay_in_their_field():
     )
     sheet = texture.atlas(parts)
     vertices, shared = merge_solids([p.solid for p in parts])
-    corners = corners_of(parts, vertices, shared, normals(vertices, shared))
-    pixels = sheet.uv(parts, corners) * [sheet.width, sheet.height]
+    pixels = sheet.uv(parts, vertices, shared, sides_of(normals(vertices, shared), shared)) * [sheet.width, sheet.height]
+    owner = np.repeat(np.arange(len(parts)), [len(p.solid.vertices) for p in parts])[shared.corners]
     for number, part in enumerate(parts):
-        field, mine = sheet.fields[sheet.finishes.index(part.finish)], pixels[corners.piece == number]
+        field, mine = sheet.fields[sheet.finishes.index(part.finish)], pixels[owner == number]
         assert (mine >= [field.x, field.y]).all()
         assert (mine <= [field.x + field.width, field.y + field.height]).all()
     around = np.linalg.norm(pixels[shared.following] - pixels, axis=1)

@@ -11,7 +11,7 @@ from shapely.affinity import rotate
 from shapely.geometry import LineString, Point, Polygon, box
 
 from pipeline import taxonomy
-from pipeline.corpus.houses import dining
+from pipeline.corpus.houses import living
 from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.planner import agenda, make_plan
 from pipeline.corpus.houses.room_occupancy import Space, problems
@@ -162,7 +162,7 @@ def test_four_chairs_at_a_square_table_have_a_side_each_and_room_beside_each_oth
     model = {m.category: m for models in stock().by_category.values() for m in models}
     chair = model["dining_chair"]
     for side in (0.8, 0.9, 1.1):
-        seats = dining.seats_at(replace(model["dining_table"], size=(side, side, 0.75)), chair, 4, -0.1)
+        seats = living.seats_at(replace(model["dining_table"], size=(side, side, 0.75)), chair, 4, -0.1)
         w, d = chair.size[:2]
         boxes = [rotate(box(x - w / 2, y - d / 2, x + w / 2, y + d / 2), turn, use_radians=True) for x, y, turn in seats]
         assert sorted(turn for *_, turn in seats) == pytest.approx([-math.pi / 2, 0.0, math.pi / 2, math.pi])
