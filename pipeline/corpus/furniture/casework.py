@@ -65,6 +65,16 @@ class Case:
     nose: float = 0.0
 
 
+def drawers(count: int) -> tuple[Cell, ...]:
+    """Return so many equal drawers."""
+    return (Cell("drawer"),) * count
+
+
+def grid(count: int, *cells: Cell) -> list[Column]:
+    """Return so many equal columns."""
+    return [Column(1, cells)] * count
+
+
 def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve: float | None = None) -> Shape:
     """Return a piece of case furniture of `size` (w, d, h) [m]; `reserve` [m] in front of the fronts is kept for handles."""
     w, d, h = size

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import arc, band, prism, turns
-from pipeline.corpus.furniture.casework import Case, Cell, Column, case
+from pipeline.corpus.furniture.casework import Case, Cell, Column, case, grid
 from pipeline.corpus.furniture.finishes import Finish, Scheme, cane
 from pipeline.corpus.furniture.fronts import Rect, frame
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, polar, split
@@ -128,9 +128,10 @@ def _bar(w: float, d: float, h: float, t: float, scheme: Scheme) -> Pieces:
 
 def cased_table(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme, *, drawer_height: float, count: int) -> Shape:
     """Build a shallow case with a row of drawers on legs."""
-    style = front_style(rng, scheme, "slab slab shaker")
-    how = replace(case_style(rng, scheme, style, "tapered square sled", (0.1, 0.2)), feet_height=max(0.05, h - drawer_height - 0.04))
-    return case((w, d, h), [Column(1, (Cell("drawer"),)) for _ in range(count)], how)
+    how = replace(
+        case_style(rng, scheme, "tapered square sled", (0.1, 0.2), "slab slab shaker"), feet_height=max(0.05, h - drawer_height - 0.04)
+    )
+    return case((w, d, h), grid(count, Cell("drawer")), how)
 
 
 def coffee_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
