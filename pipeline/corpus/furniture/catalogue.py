@@ -12,7 +12,7 @@ from scipy.special import ndtri
 
 from pipeline import seeds, style, taxonomy
 from pipeline.card import Corpus, Form, Size, cards
-from pipeline.corpus.furniture.finishes import MANNERS
+from pipeline.corpus.furniture.finishes import MANNERS, SUPER_CATEGORIES
 
 TAIL = float(ndtri(0.95))
 MOST_SKEWED = 1.2
@@ -97,19 +97,6 @@ def _standardise(values: NDArray[np.float64], free: NDArray[np.bool_], size: Siz
     np.clip(values, LEAST * size.p05[axis], MOST * size.p95[axis], out=values)
 
 
-# 3D-FUTURE's super-category for each of our own (`super` of the cards); it has none for kitchens and baths.
-SUPER_CATEGORIES: Mapping[str, str] = {
-    "bed": "Bed",
-    "cabinet": "Cabinet/Shelf/Desk",
-    "table": "Table",
-    "chair": "Chair",
-    "stool": "Pier/Stool",
-    "sofa": "Sofa",
-    "lighting": "Lighting",
-}
-OTHER_SUPER_CATEGORY = "Others"
-
-
 @functools.cache
 def lines() -> Mapping[str, Corpus]:
     """Return what the cards say of the corpus, by category, in the corpus's order."""
@@ -190,7 +177,7 @@ def _models(seed: int, category: str, line: Corpus, count: int, *, articulated: 
                 style=look,
                 form=name,
                 future_name=form.name or line.name,
-                super_category=SUPER_CATEGORIES.get(entry.super, OTHER_SUPER_CATEGORY),
+                super_category=SUPER_CATEGORIES.get(entry.super, "Others"),
                 partnet_category=entry.names.partnet[0] if articulated else "",
                 seed=int(rng.integers(2**31)),
             )

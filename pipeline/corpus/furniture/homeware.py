@@ -1,24 +1,29 @@
 """What hangs on walls (the back at the wall, +y), and what people leave about: frames, candles, trays, bottles, jars, toys, televisions."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
-from pipeline.corpus.furniture.finishes import FABRICS, FINISHES, LACQUERS, WOODS, Finish, Material, Pattern, Scheme, one_of, pick, shade
+from pipeline.corpus.furniture.finishes import (
+    FABRICS,
+    FINISHES,
+    LACQUERS,
+    PALETTES,
+    WOODS,
+    Finish,
+    Material,
+    Pattern,
+    Scheme,
+    one_of,
+    pick,
+    shade,
+)
 from pipeline.corpus.furniture.fronts import Rect, frame
 from pipeline.corpus.furniture.intervals import Interval, around, corners, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, Vector, box, circle, cushion, pillow, revolve, ring, rod, slab, standing
 from pipeline.corpus.furniture.tableware import glaze
-from pipeline.style import Color
-
-INKS: tuple[tuple[Color, Color], ...] = (
-    ((0.75, 0.70, 0.60), (0.05, 0.08, 0.14)),
-    ((0.72, 0.66, 0.55), (0.45, 0.12, 0.05)),
-    ((0.10, 0.16, 0.22), (0.78, 0.62, 0.38)),
-    ((0.78, 0.75, 0.70), (0.04, 0.18, 0.14)),
-    ((0.68, 0.42, 0.30), (0.82, 0.78, 0.68)),
-    ((0.80, 0.79, 0.76), (0.03, 0.03, 0.035)),
-)
 
 
 def frame_boards(w: float, h: float, wide: float, y: Interval, bevel: float = 0.002) -> list[Solid]:
@@ -31,8 +36,7 @@ def picture(rng: np.random.Generator, form: str, w: float, d: float, h: float, s
     """Build a framed print with a mount, a bare canvas, or a pair of prints."""
     back = d / 2
     pattern: Pattern = pick(rng, "art_blocks art_hills art_circles art_lines")  # type: ignore[assignment]
-    ground, ink = one_of(rng, INKS)
-    art = Finish("print", ground, 0.7, pattern=pattern, density=400, second=ink)
+    art = replace(FINISHES[f"print_{rng.integers(6)}"], pattern=pattern)
     if form == "canvas":
         return Shape(pieces("canvas", box(around(w / 2), (-back, back), (0.0, h), 0.003), art))
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
@@ -96,11 +100,6 @@ def _upright(radius: float, angle: float, y: float, z: float) -> Vector:
     return (x, y, z + up)
 
 
-WAX: tuple[Color, ...] = ((0.78, 0.74, 0.64), (0.55, 0.32, 0.24), (0.30, 0.36, 0.30), (0.68, 0.55, 0.52))
-FRUIT: tuple[Color, ...] = ((0.62, 0.05, 0.03), (0.70, 0.30, 0.02), (0.45, 0.52, 0.05), (0.72, 0.58, 0.05))
-CONTENTS: tuple[Color, ...] = ((0.62, 0.48, 0.28), (0.16, 0.07, 0.03), (0.74, 0.70, 0.60), (0.50, 0.26, 0.08), (0.30, 0.34, 0.12))
-
-
 def television(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a flat television on a foot in the middle, or on two feet."""
     low = 0.06 * h
@@ -117,8 +116,8 @@ def television(rng: np.random.Generator, form: str, w: float, d: float, h: float
 
 def photo_frame(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a framed photograph that leans back on a strut, upright or oblong."""
-    paper, ink = one_of(rng, INKS)
-    art = Finish("photo", paper, 0.4, pattern=pick(rng, "art_hills art_circles art_blocks"), density=400, second=ink)  # type: ignore[arg-type]
+    paper = FINISHES[f"print_{rng.integers(6)}"]
+    art = replace(paper, name="photo", roughness=0.4, pattern=pick(rng, "art_hills art_circles art_blocks"))  # type: ignore[arg-type]
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
     rim, front = 0.1 * w, -d / 2 + 0.006
     slope = 0.5 * d / h
@@ -131,7 +130,7 @@ def photo_frame(rng: np.random.Generator, form: str, w: float, d: float, h: floa
 def candle(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a pillar candle on a dish, one in a glass, or a thin one on a stick."""
     r = w / 2
-    wax = Finish("wax", shade(rng, one_of(rng, WAX), 0.08), 0.5, density=900)
+    wax = Finish("wax", shade(rng, one_of(rng, PALETTES["wax"]), 0.08), 0.5, density=900)
     wick = pieces("wick", rod((0, 0, 0.93 * h), (0, 0, h), 0.0015, n=6), "shell")
     if form == "glass":
         body = slab(circle(0.86 * r, 16), (0.02 * h, 0.62 * h))
@@ -193,7 +192,7 @@ def canister(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
     lid = scheme.timber if rng.random() < 0.6 else scheme.handle
     top = [slab(circle(0.96 * r, 16), (0.86 * h, 0.94 * h), 0.003), slab(circle(0.25 * r, 12), (0.94 * h, h), 0.002)]
     if form == "glass":
-        food = Finish("food", shade(rng, one_of(rng, CONTENTS), 0.15), 0.9, pattern="speckle", density=700)
+        food = Finish("food", shade(rng, one_of(rng, PALETTES["food"]), 0.15), 0.9, pattern="speckle", density=700)
         inside = slab(circle(0.9 * r, 16), (0.02 * h, 0.86 * h * float(rng.uniform(0.45, 0.9))))
         jar = ring((r, r), (0.91 * r, 0.91 * r), (0.0, 0.86 * h), 12)
         return Shape(pieces("food", inside, food) + pieces("jar", jar, "clear_glass") + pieces("lid", top, lid))
@@ -254,7 +253,7 @@ def fruit_bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float
 
 
 def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, number: int) -> Pieces:
-    color = one_of(rng, FRUIT)
+    color = one_of(rng, PALETTES["fruit"])
     rounds = [(0.3 * r, -r), (0.75 * r, -0.75 * r), (r, -0.1 * r), (0.8 * r, 0.7 * r), (0.3 * r, r)]
     solids = [s.moved(at) for s in revolve(rounds, 10)]
     return pieces(f"fruit_{number}", solids, Finish("fruit", shade(rng, color, 0.2), 0.4, density=800))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import band, curve, tube, turns
-from pipeline.corpus.furniture.finishes import Finish, Material, Scheme, cane, one_of
+from pipeline.corpus.furniture.finishes import PROFILES, Finish, Material, Scheme, cane, one_of
 from pipeline.corpus.furniture.finishes import shade as tinted
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
@@ -16,17 +16,7 @@ from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, 
 WALL = 0.006
 
 
-PROFILES = {  # (radius, height) upwards, in shares
-    "drum": ((1.0, 0.0), (0.9, 1.0)),
-    "cone": ((1.0, 0.0), (0.26, 0.92), (0.2, 1.0)),
-    "cylinder": ((1.0, 0.0), (1.0, 1.0)),
-    "bell": ((1.0, 0.0), (0.82, 0.2), (0.66, 0.55), (0.5, 1.0)),
-    "pleated": ((1.0, 0.0), (0.62, 1.0)),
-    "mushroom": ((1.0, 0.0), (0.99, 0.2), (0.85, 0.6), (0.5, 0.9), (0.16, 1.0)),
-    "rattan": ((0.72, 0.0), (1.0, 0.34), (0.9, 0.66), (0.42, 1.0)),
-    "crystal": ((0.7, 0.0), (1.0, 1.0)),
-    "dome": tuple((math.cos(a), math.sin(a) / math.sin(1.25)) for a in np.linspace(0.0, 1.25, 5)),
-}
+DOME = tuple((math.cos(a), math.sin(a) / math.sin(1.25)) for a in np.linspace(0.0, 1.25, 5))
 
 
 def shade_word(rng: np.random.Generator, scheme: Scheme, without: str) -> str:
@@ -58,7 +48,8 @@ def shade(rng: np.random.Generator, scheme: Scheme, kind: str, radius: float, z:
     if kind in ("lantern", "cage"):
         return (_lantern if kind == "lantern" else _cage)(scheme, radius, z)
     metal, weave = scheme.handle, cane(rng)
-    profile = [(r * radius, z[0] + q * (z[1] - z[0])) for r, q in PROFILES[kind]]
+    shares = DOME if kind == "dome" else PROFILES[f"{kind}_shade"]
+    profile = [(r * radius, z[0] + q * (z[1] - z[0])) for r, q in shares]
     dome = metal if rng.random() < 0.6 else scheme.front
     covers: dict[str, Material] = {"rattan": weave, "cone": scheme.front, "dome": dome, "mushroom": scheme.front, "crystal": "glow"}
     cover = covers.get(kind, "shade_cloth")

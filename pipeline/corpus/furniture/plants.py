@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
-from pipeline.corpus.furniture.finishes import FINISHES, Finish, Material, Scheme, draw_material, shade
+from pipeline.corpus.furniture.finishes import FINISHES, PROFILES, Finish, Material, Scheme, draw_material, shade
 from pipeline.corpus.furniture.intervals import Spot, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
@@ -15,12 +15,6 @@ from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
 GOLDEN = math.pi * (3 - math.sqrt(5))
 
 
-POTS = (  # profiles of (radius, height), in shares
-    ((0.72, 0.0), (1.0, 1.0)),
-    ((1.0, 0.0), (1.0, 1.0)),
-    ((0.6, 0.0), (0.94, 0.35), (1.0, 0.6), (0.86, 1.0)),
-    ((0.94, 0.0), (0.94, 1.0)),
-)
 Points = NDArray[np.float64]
 
 
@@ -46,7 +40,7 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
         parts += pieces("stand", legs, scheme.timber)
         parts += pieces("stand_bars", rod((-bar[0], -bar[1], lift - 0.012), (*bar, lift - 0.012), 0.009, n=6), scheme.timber)
         r = r * 0.9
-    profile = [(a * r, lift + b * (h - lift)) for a, b in POTS[kind]]
+    profile = [(a * r, lift + b * (h - lift)) for a, b in PROFILES[f"pot_{kind}"]]
     walls = [(profile[0][0], lift + 0.014), *profile[1:]]
     for (r0, z0), (r1, z1) in itertools.pairwise(walls):
         parts += pieces("pot", ring((r0, r1), (r0 - 0.013, r1 - 0.013), (z0, z1), 22), finish)

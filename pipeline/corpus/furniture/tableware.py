@@ -10,6 +10,7 @@ from pipeline.corpus.furniture.finishes import (
     FABRICS,
     FINISHES,
     LACQUERS,
+    PROFILES,
     WOODS,
     Finish,
     Material,
@@ -26,11 +27,6 @@ from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, 
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
 BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue", "barn_red", "emerald", "greige", "blush", "black")
-VASES = {  # profiles of (radius, height), in shares
-    "bottle": ((0.6, 0.0), (0.95, 0.12), (1.0, 0.3), (0.8, 0.5), (0.3, 0.66), (0.24, 0.9), (0.34, 1.0)),
-    "belly": ((0.5, 0.0), (0.86, 0.18), (1.0, 0.45), (0.9, 0.7), (0.55, 0.9), (0.6, 1.0)),
-    "upright": ((0.62, 0.0), (0.8, 0.3), (1.0, 0.75), (0.7, 0.95), (0.74, 1.0)),
-}
 
 
 def glaze(rng: np.random.Generator) -> Finish:
@@ -86,7 +82,7 @@ def vase(rng: np.random.Generator, form: str, w: float, d: float, h: float, sche
     finish = glaze(rng)
     tall, share, n = (0.55 * h, 0.42, 16) if form == "twigs" else (h, 1.0, 24)
     r = min(w, d) / 2 * share
-    profile = [(a * r, b * tall) for a, b in VASES.get(form, VASES["upright"])]
+    profile = [(a * r, b * tall) for a, b in PROFILES["upright_vase" if form == "twigs" else f"{form}_vase"]]
     lower, upper = profile[: len(profile) - 2], profile[len(profile) - 3 :]
     base = pieces("vase", revolve(curve(lower, 3).tolist(), n), finish)
     for (r0, z0), (r1, z1) in itertools.pairwise(upper):
