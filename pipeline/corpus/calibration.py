@@ -27,6 +27,10 @@ SOFAS = frozenset({"multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa"})
 DINING = frozenset({"dining_chair", "chinese_chair"})
 NEAR_TABLE, ABOVE_TABLE = 1.6, 0.45
 """A chair belongs to a table within this distance, a lamp hangs above one within that [m]."""
+TOTAL_VARIATION, RELATIVE = 0.05, 0.10
+HISTOGRAM = ((1, 3), (4, 6), (7, 9), (10, 12), (13, 15), (16, 99))
+LEAST_MODELS = 20
+"""Sizes are held to the reference where it counted so many models."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,11 +171,6 @@ def _defects(scene: Json) -> dict[str, tuple[int, int]]:
         "mirrored": (sum(bool(np.min(c["scale"]) < 0) for c in children), len(children)),
     }
 
-
-TOTAL_VARIATION, RELATIVE = 0.05, 0.10
-HISTOGRAM = ((1, 3), (4, 6), (7, 9), (10, 12), (13, 15), (16, 99))
-LEAST_MODELS = 20
-"""Sizes are held to the reference where it counted so many models."""
 
 Line = dict[str, Any]
 

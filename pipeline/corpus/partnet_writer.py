@@ -23,6 +23,16 @@ from pipeline.corpus.furniture.shape import FRONT, Axis3, Mover, Piece, Pieces, 
 from pipeline.corpus.furniture.texture import Atlas
 from pipeline.corpus.furniture.wavefront import mesh_frame
 
+TEXTURE = "images/texture_0.png"  # in an object's folder
+BASE_RPY = "1.570796326794897 0 -1.570796326794897"
+WORLD = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # mesh frame to PartNet's world
+# Corners of a part's box in its own axes, in GAPartNet's order.
+CORNERS = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1), (-1, 1, -1), (1, 1, -1), (1, -1, -1), (-1, -1, -1)], float) / 2
+# PartNet's word for a moving link; storage furniture and tables turn "door" into this.
+ROTATION_DOOR = "rotation_door"
+FURNITURE = frozenset({"StorageFurniture", "Table"})
+JOINT_WORDS = {"revolute": "hinge", "prismatic": "slider"}
+
 
 @dataclass(frozen=True, slots=True)
 class Component:
@@ -125,17 +135,6 @@ def without_handles(links: Sequence[LinkRecord]) -> list[LinkRecord]:
         )
         for link in kept
     ]
-
-
-TEXTURE = "images/texture_0.png"  # in an object's folder
-BASE_RPY = "1.570796326794897 0 -1.570796326794897"
-WORLD = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # mesh frame to PartNet's world
-# Corners of a part's box in its own axes, in GAPartNet's order.
-CORNERS = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1), (-1, 1, -1), (1, 1, -1), (1, -1, -1), (-1, -1, -1)], float) / 2
-# PartNet's word for a moving link; storage furniture and tables turn "door" into this.
-ROTATION_DOOR = "rotation_door"
-FURNITURE = frozenset({"StorageFurniture", "Table"})
-JOINT_WORDS = {"revolute": "hinge", "prismatic": "slider"}
 
 
 def write_partnet(models: Sequence[Model], folder: Path) -> None:

@@ -12,6 +12,8 @@ from pipeline.corpus.furniture.intervals import Interval, Spot, around, between,
 from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, pieces, staves
 from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, slab, standing
 
+WIRE = 0.004  # radius of a bail [m]
+
 
 def laptop(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a closed laptop: a deck of keys and a touch pad under a screen that opens past the upright."""
@@ -186,9 +188,6 @@ def printer(rng: np.random.Generator, form: str, w: float, d: float, h: float, s
         solids += pieces("feeder", feeder, trim, group="cover")
     movers.append(lid("cover", solids, (0.0, y[1] - 0.002, top + 0.003), math.radians(70)))
     return Shape(base, tuple(movers))
-
-
-WIRE = 0.004  # radius of a bail [m]
 
 
 def _enamel(rng: np.random.Generator) -> Material:

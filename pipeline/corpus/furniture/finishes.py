@@ -16,6 +16,19 @@ Pattern = Literal[
     "plain", "grain", "weave", "speckle", "leather", "boucle", "velvet", "brushed", "concrete", "marble", "terrazzo", "stripe", "check", "floral",
     "cane", "knit", "leaf", "rug_border", "rug_diamonds", "rug_stripes", "art_blocks", "art_hills", "art_circles", "art_lines", "dial",
 ]  # fmt: skip
+FILE = "manifests/furniture.yaml"
+PATH = Path(__file__).resolve().parents[3] / FILE
+MANNERS: Mapping[str, StyleSpec] = {name: known.spec for name, known in style.load().styles.items()}
+CLASSIC, ORIENTAL = (style.load().groups[name] for name in ("classic", "oriental"))
+COLOURS = style.load().colours
+WOODS, LACQUERS, FABRICS, LEATHERS, METALS = (COLOURS[kind] for kind in ("woods", "lacquers", "fabrics", "leathers", "metals"))
+CLOTH_GROUNDS: Color = (0.72, 0.68, 0.60)  # the light thread of striped, checked and flowered cloth
+_KNOWN: dict[str, Any] = yaml.safe_load(PATH.read_text(encoding="utf-8"))
+PALETTES: Mapping[str, tuple[Color, ...]] = params.convert(Mapping[str, tuple[Color, ...]], _KNOWN["palettes"], "palettes", FILE)
+PROFILES: Mapping[str, tuple[tuple[float, ...], ...]] = params.convert(
+    Mapping[str, tuple[tuple[float, ...], ...]], _KNOWN["profiles"], "profiles", FILE
+)
+SUPER_CATEGORIES: Mapping[str, str] = _KNOWN["super_categories"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,20 +71,7 @@ class Scheme:
 
 Material = Finish | str
 """A finish, or the name of one in manifests/furniture.yaml."""
-FILE = "manifests/furniture.yaml"
-PATH = Path(__file__).resolve().parents[3] / FILE
-MANNERS: Mapping[str, StyleSpec] = {name: known.spec for name, known in style.load().styles.items()}
-CLASSIC, ORIENTAL = (style.load().groups[name] for name in ("classic", "oriental"))
-COLOURS = style.load().colours
-WOODS, LACQUERS, FABRICS, LEATHERS, METALS = (COLOURS[kind] for kind in ("woods", "lacquers", "fabrics", "leathers", "metals"))
-CLOTH_GROUNDS: Color = (0.72, 0.68, 0.60)  # the light thread of striped, checked and flowered cloth
-_KNOWN: dict[str, Any] = yaml.safe_load(PATH.read_text(encoding="utf-8"))
 FINISHES = {key: params.build(Finish, {"name": key} | entry, f"finishes.{key}", FILE) for key, entry in _KNOWN["finishes"].items()}
-PALETTES: Mapping[str, tuple[Color, ...]] = params.convert(Mapping[str, tuple[Color, ...]], _KNOWN["palettes"], "palettes", FILE)
-PROFILES: Mapping[str, tuple[tuple[float, ...], ...]] = params.convert(
-    Mapping[str, tuple[tuple[float, ...], ...]], _KNOWN["profiles"], "profiles", FILE
-)
-SUPER_CATEGORIES: Mapping[str, str] = _KNOWN["super_categories"]
 
 
 def pick(rng: np.random.Generator, words: str) -> str:

@@ -33,6 +33,8 @@ from pipeline.corpus.furniture.storage import front_style
 
 PLINTH = 0.1  # height of a kitchen unit's recessed plinth [m]
 NOSE = 0.018  # how far a worktop stands out over its fronts [m]
+LEAF = 0.04  # thickness of a leaf [m]
+LEVER = 0.055  # how far a lever stands out of its leaf [m]
 
 
 def unit_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> Case:
@@ -279,10 +281,6 @@ def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     base += pieces("posts", posts, metal) + pieces("rail", pole, metal)
     base += pieces("mixer", box((-0.13, 0.13), (back, d / 2), (1.02, 1.07), 0.008), metal)
     return Shape(base + pieces("drain", ring((0.045, 0.045), (0.03, 0.03), (tray - 0.02, tray - 0.017), 16), "steel"))
-
-
-LEAF = 0.04  # thickness of a leaf [m]
-LEVER = 0.055  # how far a lever stands out of its leaf [m]
 
 
 def room_door(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:

@@ -17,6 +17,12 @@ PanelStyle = Literal["slab", "shaker", "raised", "glass", "dark_glass", "slats",
 HandleStyle = Literal["bar", "long", "flat", "knob", "ring", "cup", "edge", "groove", "none"]
 
 LIP = 0.024  # height of the strip that a hand reaches behind, of fronts without handles [m]
+Side = Literal["left", "right", "bottom", "top"]
+GAP = 0.003  # between a front and its neighbours [m]
+RUN = 0.004  # between a drawer and what it runs in [m]
+BOARD = 0.012  # walls of a drawer [m]
+TURN = 1.5 * math.pi  # of a dial [rad]
+REACHES: dict[HandleStyle, float] = {"bar": 0.032, "long": 0.032, "flat": 0.024, "knob": 0.026, "ring": 0.016, "cup": 0.022, "edge": 0.014}
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,15 +150,6 @@ def _reeds(rect: Rect, proud: float) -> list[Solid]:
         outline = np.stack([x + 0.46 * pitch * np.cos(turns), rect.y + proud + proud * np.sin(turns)], axis=1)
         strips.append(slab(outline, rect.z))
     return strips
-
-
-Side = Literal["left", "right", "bottom", "top"]
-
-GAP = 0.003  # between a front and its neighbours [m]
-RUN = 0.004  # between a drawer and what it runs in [m]
-BOARD = 0.012  # walls of a drawer [m]
-TURN = 1.5 * math.pi  # of a dial [rad]
-REACHES: dict[HandleStyle, float] = {"bar": 0.032, "long": 0.032, "flat": 0.024, "knob": 0.026, "ring": 0.016, "cup": 0.022, "edge": 0.014}
 
 
 def reach(handle: HandleStyle) -> float:

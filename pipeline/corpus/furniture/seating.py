@@ -13,6 +13,8 @@ from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, board, box, circle, cushion, revolve, rod, slab, standing
 from pipeline.corpus.furniture.textiles import piping, seat_cushion, tufted_panel, upright_pad
 
+TUBE = 0.011  # radius of bent steel
+
 
 @dataclass(frozen=True, slots=True)
 class Frame:
@@ -116,9 +118,6 @@ def _cross(frame: Frame) -> list[Solid]:
     for s, dy in ((-1, -0.009), (1, 0.009)):
         bars.append(rod((-s * x, frame.y + dy, z[0]), (s * x, frame.y + dy, z[1]), 0.009, n=8))
     return bars
-
-
-TUBE = 0.011  # radius of bent steel
 
 
 def dining_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:

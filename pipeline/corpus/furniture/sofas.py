@@ -12,6 +12,10 @@ from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, slab, stack
 from pipeline.corpus.furniture.textiles import bolster, channels, piping, seat_cushion, throw_pillow, tufted_panel, upright_pad
 
+ARMS = {"track": 0.13, "legs": 0.09, "roll": 0.2, "chesterfield": 0.2, "camelback": 0.17, "cloud": 0.22, "u_shape": 0.15}
+LIFTS = {"track": 0.05, "legs": 0.15, "roll": 0.09, "chesterfield": 0.1, "camelback": 0.17, "cloud": 0.03, "u_shape": 0.06}
+REST = (1.2, 1.45, 1.5, 1.4, 1.2)  # widths along a wooden arm, in those of its post
+
 
 def lounge_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build an easy chair in a wooden frame, an office chair, a wing chair, a recliner's shell, a tub or a cane chair."""
@@ -154,13 +158,6 @@ def _rattan(rng: np.random.Generator, w: float, d: float, h: float, scheme: Sche
     feet = [rod((s * 0.8 * x, t * 0.78 * y, 0), (s * 0.66 * x, t * 0.62 * y, seat - 0.066), 0.015, n=8) for s, t in corners(1, 1)]
     pad = revolve([(0.9, seat - 0.05), (1.0, seat - 0.03), (1.0, seat + 0.01), (0.92, seat + 0.035), (0.5, seat + 0.045)], 24)
     return parts + pieces("legs", feet, pole) + pieces("pad", [s.scaled(np.array([0.8 * x, 0.74 * y, 1])) for s in pad], scheme.soft)
-
-
-ARMS = {"track": 0.13, "legs": 0.09, "roll": 0.2, "chesterfield": 0.2, "camelback": 0.17, "cloud": 0.22, "u_shape": 0.15}
-LIFTS = {"track": 0.05, "legs": 0.15, "roll": 0.09, "chesterfield": 0.1, "camelback": 0.17, "cloud": 0.03, "u_shape": 0.06}
-
-
-REST = (1.2, 1.45, 1.5, 1.4, 1.2)  # widths along a wooden arm, in those of its post
 
 
 def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:

@@ -12,6 +12,8 @@ from pipeline.corpus.furniture.intervals import Interval, around
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import box, rod
 
+BOOK_COLORS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue")
+
 
 def front_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> FrontStyle:
     """Draw how the fronts of a model look: as its style has it, unless `panels` are named."""
@@ -254,9 +256,6 @@ def bookshelf(rng: np.random.Generator, form: str, w: float, d: float, h: float,
         columns = [Column(1, (Cell("open", 1.9, rows - 3), doors_of(rng, w / count, 0.9, 1))) for _ in range(count)]
     shape = case((w, d, h), columns, how)
     return Shape(shape.base + (books(rng, shape) if form == "open" else ()), shape.movers)
-
-
-BOOK_COLORS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue")
 
 
 def books(rng: np.random.Generator, shape: Shape) -> Pieces:

@@ -26,6 +26,7 @@ from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, board, box, circle, cushion, pillow, ring, rod, rounded_rectangle, slab, standing
 
 SEAM = 0.007  # height of a piping
+TERRY = ("snow_cloth", "cream_cloth", "grey_cloth", "linen", "blue_cloth", "mint_cloth", "taupe_cloth", "rust_cloth", "charcoal")
 
 
 def piping(rng: np.random.Generator, scheme: Scheme) -> Material | None:
@@ -162,9 +163,6 @@ def cushion_pillow(rng: np.random.Generator, form: str, w: float, d: float, h: f
         middle = slab(circle(0.2 * w, 20), (0.06 * h, 0.94 * h), 0.01)
         return Shape(pieces("pillow", rims, cloth) + pieces("button", middle, cloth))
     return Shape(pieces("pillow", pillow(around(w / 2), around(d / 2), (0.0, h), 3), cloth))
-
-
-TERRY = ("snow_cloth", "cream_cloth", "grey_cloth", "linen", "blue_cloth", "mint_cloth", "taupe_cloth", "rust_cloth", "charcoal")
 
 
 def terry(rng: np.random.Generator, scheme: Scheme) -> Finish:

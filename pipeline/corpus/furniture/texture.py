@@ -28,6 +28,12 @@ CONTRAST: Mapping[str, float] = {
     "plain": 0.0, "grain": 0.20, "weave": 0.09, "speckle": 0.08, "leather": 0.10, "boucle": 0.16, "velvet": 0.10, "brushed": 0.10, "concrete": 0.14,
     "marble": 0.2, "terrazzo": 0.3, "stripe": 0.2, "check": 0.2, "floral": 0.2, "cane": 0.3, "knit": 0.15, "leaf": 0.2,
 }  # fmt: skip
+FINEST = 256.0  # [pixels per metre]
+LARGEST = 320  # pixels a side; a model too large for that at FINEST gets fewer per metre
+MARGIN = 2  # pixels around each field, so that filtering does not mix neighbours
+PLAIN = 6  # pixels a side of the field of a finish without a pattern
+SHADES = 8  # of one finish
+GOLDEN = 0.6180339887498949
 
 
 def tones(rng: np.random.Generator, pattern: Pattern, shape: tuple[int, int], scale: float) -> Tones:
@@ -220,14 +226,6 @@ _DRAWN: Mapping[str, Callable[[np.random.Generator, Tones, Tones, float], Tones]
 }
 # Patterns that are drawn once over their whole piece: never turned, never shifted.
 WHOLE = frozenset(_DRAWN)
-
-
-FINEST = 256.0  # [pixels per metre]
-LARGEST = 320  # pixels a side; a model too large for that at FINEST gets fewer per metre
-MARGIN = 2  # pixels around each field, so that filtering does not mix neighbours
-PLAIN = 6  # pixels a side of the field of a finish without a pattern
-SHADES = 8  # of one finish
-GOLDEN = 0.6180339887498949
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,7 @@ SQUARE = 1.25
 """Four sit around a table whose length is at most so many times its depth, one on each side."""
 SQUARE_SHARE = 0.35
 """Share of the tables for four that are square, where there is one."""
+SIDE_TABLES = {"none": 0, "one": 1, "two": 2}
 
 
 def furnish_dining_corner(arranger: Arranger) -> None:
@@ -134,9 +135,6 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
             spot.yaw,
         )
     return True
-
-
-SIDE_TABLES = {"none": 0, "one": 1, "two": 2}
 
 
 @dataclass(frozen=True, slots=True)

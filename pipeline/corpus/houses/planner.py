@@ -26,6 +26,15 @@ LOW, HIGH = 0.85, 1.12
 FEW = 3
 """Rooms that may open off a living room without a corridor."""
 SHAPES = {"rectangle": 0.3, "L": 0.4, "T": 0.3}
+BLOCK = 32
+"""Houses over which decisions are dealt evenly."""
+MOST_PRIVATE = 5
+"""Rooms that a plan can hold beside the living rooms."""
+CORRIDORS = ("Hallway", "Aisle", "Corridor")
+KINDS: Mapping[str, str] = {name: room["chances"] for name, room in rates.load()["rooms"].items()}  # whose chances furnish a type of room
+PROGRAMS = 24
+LARGEST_AISLE = 3.1
+"""What is larger is called a corridor [m2]."""
 
 
 def area(rng: np.random.Generator, room_type: str) -> float:
@@ -119,14 +128,6 @@ def _private(rng: np.random.Generator, furnished: Sequence[str]) -> list[str]:
     return sorted(rooms, key=lambda t: t != "MasterBedroom")
 
 
-BLOCK = 32
-"""Houses over which decisions are dealt evenly."""
-MOST_PRIVATE = 5
-"""Rooms that a plan can hold beside the living rooms."""
-CORRIDORS = ("Hallway", "Aisle", "Corridor")
-KINDS: Mapping[str, str] = {name: room["chances"] for name, room in rates.load()["rooms"].items()}  # whose chances furnish a type of room
-
-
 @dataclass(frozen=True, slots=True)
 class Agenda:
     """The types of the furnished rooms, and per recipe the first ordinal of this house and the total of its block."""
@@ -205,11 +206,6 @@ def _living(rng: np.random.Generator, drawn: list[tuple[str, ...]]) -> list[tupl
     return [
         tuple(("LivingDiningRoom" if k in both else "LivingRoom") if t == "living" else t for t in rooms) for k, rooms in enumerate(drawn)
     ]
-
-
-PROGRAMS = 24
-LARGEST_AISLE = 3.1
-"""What is larger is called a corridor [m2]."""
 
 
 def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:

@@ -27,6 +27,9 @@ LEAF_TOP = 2.12
 """Nothing hangs lower than this where a door leaf swings [m]."""
 LOW_PIECE = 0.65
 """What is no higher than this may stand before any window [m]."""
+CELL = 0.1
+WAY = 0.3
+"""Half the width that people leave for the ways through their rooms [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,11 +296,6 @@ def sides_of(room: Room) -> list[Side]:
         length = math.hypot(q[0] - p[0], q[1] - p[1])
         sides.append(Side(p[0], p[1], round((q[0] - p[0]) / length), round((q[1] - p[1]) / length), length))
     return sides
-
-
-CELL = 0.1
-WAY = 0.3
-"""Half the width that people leave for the ways through their rooms [m]."""
 
 
 def free_floor(space: Space, items: Sequence[Item]) -> NDArray[np.bool_]:

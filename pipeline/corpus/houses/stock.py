@@ -18,6 +18,8 @@ LEAST = 0.07
 """Narrowest top that anything lies on [m]."""
 SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)
 """What share of a top's bounds is tried: all of a board, two thirds of a disc."""
+STYLE_WEIGHT = 3.0
+"""How much likelier a model in the house's own style is taken than another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,10 +61,6 @@ def level(corners: NDArray[np.float64]) -> tuple[float, float, float, float, flo
             (x0, y0), (x1, y1) = points[0].tolist(), points[2].tolist()
             return x0, y0, x1, y1, float(corners[:, 2].max())
     return None
-
-
-STYLE_WEIGHT = 3.0
-"""How much likelier a model in the house's own style is taken than another."""
 
 
 class Stock:
