@@ -129,12 +129,8 @@ class Arranger:
         model = self.pick(category, height=most)
         if model is None:
             return False
-        box = box_of(x, y, yaw, model.size[0], model.size[1])
-        z = round(self.space.height - model.size[2] - (LAMP_DROP if category == "pendant_lamp" else 0.0), 3)
-        if not self.space.fits(box, z, z + model.size[2]):
-            return False
-        self.space.add(model, Spot(x, y, yaw), z)
-        return True
+        drop = LAMP_DROP if category == "pendant_lamp" else 0.0
+        return self.space.try_add(model, Spot(x, y, yaw), round(self.space.height - model.size[2] - drop, 3))
 
     def light(self, places: Sequence[tuple[float, float]] = ()) -> None:
         """Hang the lamp that the room wants at the first of the places, or near the middle of the room, where there is room for it."""

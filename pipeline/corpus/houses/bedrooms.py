@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
-from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, box_of, on_side, shift_spot
+from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, on_side, shift_spot
 
 FARTHEST_TV = 1.2
 """Most free floor between a bed's foot and the TV stand [m]."""
@@ -79,9 +79,9 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
             weights = np.array([w for w, _ in candidates])
             spot = candidates[int(rng.choice(len(candidates), p=weights / weights.sum()))][1]
             w, d, _ = model.size
-            keep = [box_of(*_at(shift_spot(spot, 0.0, d / 2 + FOOT / 2)), w * 0.8, FOOT)]
+            keep = [shift_spot(spot, 0.0, d / 2 + FOOT / 2).box(w * 0.8, FOOT)]
             for sign in (-1, 1):
-                lane = box_of(*_at(shift_spot(spot, sign * (w / 2 + SIDE / 2), 0.3)), SIDE, d - 0.6)
+                lane = shift_spot(spot, sign * (w / 2 + SIDE / 2), 0.3).box(SIDE, d - 0.6)
                 if space.clear(lane):
                     keep.append(lane)
             space.add(model, spot, keep=keep)
@@ -172,7 +172,3 @@ def bed_end_stool(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
         return False
     place = shift_spot(spot, float(arranger.rng.normal(0, 0.04)), model.size[1] / 2 + stool.size[1] / 2 + 0.04)
     return arranger.space.nestle(stool, place)
-
-
-def _at(spot: Spot) -> tuple[float, float, float]:
-    return spot.x, spot.y, spot.yaw

@@ -8,7 +8,7 @@ import numpy as np
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load
-from pipeline.corpus.houses.room_occupancy import Side, Space, Spot, ahead, back_gap, box_of, on_side, shift_spot
+from pipeline.corpus.houses.room_occupancy import Side, Space, Spot, ahead, back_gap, meets, on_side, shift_spot
 
 CHAIRS = {"two": 2, "four": 4, "six": 6, "eight": 8}
 ACROSS = 0.6
@@ -105,7 +105,7 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
         if min(spare) <= 0:
             continue
         spot = Spot(x0 + half[0] + spare[0] * float(rng.random()), y0 + half[1] + spare[1] * float(rng.random()), yaw)
-        box = box_of(spot.x, spot.y, yaw, width, depth)
+        box = spot.box(width, depth)
         if not space.fits(box, 0.0, 0.75) or not space.clear(box, 0.08):
             continue
         air = sum(space.clear(box, BEHIND * k / 2) for k in (1, 2, 3)) + float(rng.random())
@@ -210,7 +210,7 @@ def _sofa_places(arranger: Arranger, sofa: Model, stand: Model | None, *, aside:
                 score += 3.0 if tv is not None else -1.0 if stand is not None else 0.0
                 score += 3.0 * _off_centre(space, spot) if aside else 0.0
                 score -= 2.0 * max(0.0, look - 4.2) + 2.0 * max(0.0, 2.1 - look)
-                if space.fits(box_of(spot.x, spot.y, spot.yaw, w, d), 0.0, h):
+                if space.fits(spot.box(w, d), 0.0, h):
                     candidates.append((score, spot, tv))
     return candidates
 
@@ -225,12 +225,8 @@ def _off_centre(space: Space, spot: Spot) -> float:
 def _sight(space: Space, side: Side, s: float) -> float:
     """Return how far one sees from a wall at `s`, in a lane 1 m wide, up to the first thing that stands [m]."""
     lane = side.strip(max(0.0, s - 0.5), min(side.length, s + 0.5), 0.01, 12.0)
-    depths = [max(0.0, side.off(r)[0]) for r, low, _ in space.solids if low < 1.0 and _crosses(lane, r)]
+    depths = [max(0.0, side.off(r)[0]) for r, low, _ in space.solids if low < 1.0 and meets(lane, r, 0.01)]
     return min(depths, default=0.0)
-
-
-def _crosses(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
-    return a[0] < b[2] - 0.01 and b[0] < a[2] - 0.01 and a[1] < b[3] - 0.01 and b[1] < a[3] - 0.01
 
 
 def _tv_place(arranger: Arranger, sofa: Spot, side: Side, stand: Model, depth: float) -> Spot | None:
@@ -240,7 +236,7 @@ def _tv_place(arranger: Arranger, sofa: Spot, side: Side, stand: Model, depth: f
     s, _ = side.along((sofa.x, sofa.y, sofa.x, sofa.y))
     x, y = side.point(s + float(arranger.rng.normal(0, 0.08)), depth - gap - d / 2)
     spot = Spot(x, y, math.remainder(sofa.yaw + math.pi, 2 * math.pi))
-    return spot if arranger.space.fits(box_of(x, y, spot.yaw, w, d), 0.0, h) else None
+    return spot if arranger.space.fits(spot.box(w, d), 0.0, h) else None
 
 
 def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None, tv: Spot | None) -> Lounge:

@@ -74,6 +74,13 @@ class Side:
         return self.x + s * self.tx - v * self.ty, self.y + s * self.ty + v * self.tx
 
 
+def box_of(x: float, y: float, yaw: float, width: float, depth: float) -> Rect:
+    """Return the bounds of a turned rectangle."""
+    c, s = abs(math.cos(yaw)), abs(math.sin(yaw))
+    w, d = (width * c + depth * s) / 2, (width * s + depth * c) / 2
+    return (x - w, y - d, x + w, y + d)
+
+
 @dataclass(frozen=True, slots=True)
 class Spot:
     """A place for a piece: centre [m, world], yaw, and where it came from along a side."""
@@ -84,17 +91,14 @@ class Spot:
     side: int = -1
     s: float = 0.0
 
+    def box(self, width: float, depth: float) -> Rect:
+        """Return the bounds of a piece of that width and depth there."""
+        return box_of(self.x, self.y, self.yaw, width, depth)
 
-def meets(a: Rect, b: Rect) -> bool:
-    """Whether two rectangles overlap by more than a hair."""
-    return a[0] < b[2] - EPSILON and b[0] < a[2] - EPSILON and a[1] < b[3] - EPSILON and b[1] < a[3] - EPSILON
 
-
-def box_of(x: float, y: float, yaw: float, width: float, depth: float) -> Rect:
-    """Return the bounds of a turned rectangle."""
-    c, s = abs(math.cos(yaw)), abs(math.sin(yaw))
-    w, d = (width * c + depth * s) / 2, (width * s + depth * c) / 2
-    return (x - w, y - d, x + w, y + d)
+def meets(a: Rect, b: Rect, by: float = EPSILON) -> bool:
+    """Whether two rectangles overlap by more than a hair, or than `by` [m]."""
+    return a[0] < b[2] - by and b[0] < a[2] - by and a[1] < b[3] - by and b[1] < a[3] - by
 
 
 def ahead(spot: Spot, depth: float, reach: float, width: float) -> Rect:
@@ -132,10 +136,7 @@ class Space:
 
     def _open(self, room_id: str, opening: Opening) -> None:
         """Keep free what an opening needs: the leaf's sweep, a step in front of it, the light of a window."""
-        (ax, ay), (bx, by) = opening.segment.tolist()
-        wall = min(range(len(self.sides)), key=lambda i: self.sides[i].away((ax + bx) / 2, (ay + by) / 2))
-        side = self.sides[wall]
-        low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
+        side, low, high = wall_of(self.sides, opening)
         if opening.kind == "window":
             self.panes.append((side.strip(low, high, 0.0, 0.65), max(opening.sill, LOW_PIECE)))
             return
@@ -198,8 +199,7 @@ class Space:
 
     def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = (), under: Rect | None = None) -> bool:
         """Put a piece down if it fits there and its free rectangles are free; a chair may reach under its table."""
-        w, d, h = model.size
-        if not self.fits(box_of(spot.x, spot.y, spot.yaw, w, d), z, z + h, under) or not all(self.clear(r) for r in keep):
+        if not self.fits(spot.box(*model.size[:2]), z, z + model.size[2], under) or not all(self.clear(r) for r in keep):
             return False
         self.add(model, spot, z, keep=keep)
         return True
@@ -212,8 +212,7 @@ class Space:
     def nestle(self, model: Model, spot: Spot, *, dry: bool = False) -> bool:
         """Put down a piece that may stand where others want floor for themselves, but not before a door; `dry`: only try."""
         wanted, self.keeps = self.keeps, self.keeps[: len(self.doors)]
-        w, d, h = model.size
-        fits = self.fits(box_of(spot.x, spot.y, spot.yaw, w, d), 0.0, h)
+        fits = self.fits(spot.box(*model.size[:2]), 0.0, model.size[2])
         self.keeps = wanted
         if fits and not dry:
             self.add(model, spot)
@@ -286,6 +285,13 @@ def inside_intervals(polygon: Sequence[tuple[float, float]], x: float) -> list[t
     """Return the intervals of y in which the vertical line at `x` runs inside a rectilinear polygon."""
     crossings = sorted(p[1] for p, q in zip(polygon, [*polygon[1:], polygon[0]], strict=True) if min(p[0], q[0]) < x < max(p[0], q[0]))
     return list(zip(crossings[::2], crossings[1::2], strict=True))
+
+
+def wall_of(sides: Sequence[Side], opening: Opening) -> tuple[Side, float, float]:
+    """Return the wall that holds an opening, and the opening's stretch along it [m]."""
+    (ax, ay), (bx, by) = opening.segment.tolist()
+    side = min(sides, key=lambda side: side.away((ax + bx) / 2, (ay + by) / 2))
+    return side, *side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
 
 
 def sides_of(room: Room) -> list[Side]:

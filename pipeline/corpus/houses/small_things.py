@@ -15,7 +15,7 @@ from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load as load_rates
 from pipeline.corpus.houses.records import Item, Rect, wrap
-from pipeline.corpus.houses.room_occupancy import Side, against, box_of, meets, problems
+from pipeline.corpus.houses.room_occupancy import against, box_of, meets, problems, wall_of
 from pipeline.corpus.houses.stock import Surfaces
 from pipeline.entities.plan import Opening
 
@@ -155,7 +155,7 @@ def hang_curtains(arranger: Arranger, share: float, openings: Sequence[Opening])
     for opening in openings:
         if model is None or opening.kind != "window":
             continue
-        side, low, high = _wall_of(space.sides, opening)
+        side, low, high = wall_of(space.sides, opening)
         w, d, h = model.size
         width = min(high - low + 0.3, 2 * min(low + high, 2 * side.length - low - high) / 2 - 0.04)
         top = min(space.height - 0.04, opening.sill + opening.height + 0.25)
@@ -169,14 +169,6 @@ def hang_curtains(arranger: Arranger, share: float, openings: Sequence[Opening])
         if not blocked and not any(meets(box, r) for r in space.sweeps):
             space.items.append(Item(model, space.number, (x, y, bottom), side.yaw, scale))
             space.solids.append((box, bottom, top))
-
-
-def _wall_of(sides: Sequence[Side], opening: Opening) -> tuple[Side, float, float]:
-    """Return the wall that holds an opening, and the opening's stretch along it [m]."""
-    (ax, ay), (bx, by) = opening.segment.tolist()
-
-    side = min(sides, key=lambda side: side.away((ax + bx) / 2, (ay + by) / 2))
-    return side, *side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
 
 
 def _on_floor(arranger: Arranger, category: str) -> None:
