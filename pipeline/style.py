@@ -17,7 +17,7 @@ class StyleSpec:
 
     `share`: how often it comes. `woods`, `lacquers` ("" for none), `fabrics`, `metals`: names of colours. `legs`: leg forms of
     legs.py. `cloths`: patterns of covers. `stones`: table tops other than wood. `shades`: forms of lamp shades. `fronts` and
-    `handles`: those of doors and drawers (panels.py). Chances in [0, 1]:
+    `handles`: those of doors and drawers (fronts.py). Chances in [0, 1]:
     `paint` lacquer instead of wood, `tube` metal legs, `stone` tops, `piping` and `tufts` of cushions, `ornament` mouldings, turnings
     and carved aprons, `cane` woven panels. `soft` [m]: radius of cushions, `edge` [m]: of boards; `slim`: factor on thicknesses.
     """

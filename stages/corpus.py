@@ -13,14 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from pipeline import params
-from pipeline.corpus.calibration import figures, output
-from pipeline.corpus.calibration.tally import HouseTally
+from pipeline.corpus.calibration import HouseTally, calibration, write_calibration
 from pipeline.corpus.furniture.catalogue import Model, catalogue
 from pipeline.corpus.future_writer import info, write_model
-from pipeline.corpus.house_files import write_houses
+from pipeline.corpus.house_files import CorpusSettings, write_houses
 from pipeline.corpus.houses import corruption
 from pipeline.corpus.partnet_writer import write_partnet
-from pipeline.corpus.settings import CorpusSettings
 from pipeline.entry import run
 from pipeline.execution import cores, track
 from pipeline.floorplan import warm
@@ -37,7 +35,7 @@ def main(root: Path) -> None:
     tree = params.read(root / "params.yaml")
     settings = params.section(CorpusSettings, tree, "corpus")
     corpus = make(root / RAW, params.convert(int, tree.get("seed"), "seed"), settings, workers=cores())
-    output.write(root, corpus)
+    write_calibration(root, corpus)
 
 
 def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> dict[str, Any]:
@@ -59,7 +57,7 @@ def make(target: Path, seed: int, settings: CorpusSettings, workers: int) -> dic
     making.replace(target)
     shutil.rmtree(old, ignore_errors=True)
     models = catalogue(seed, settings.models).future
-    return figures.calibration(tallies, models, len(corruption.in_centimetres(seed, models) if settings.corruption else ()))
+    return calibration(tallies, models, len(corruption.in_centimetres(seed, models) if settings.corruption else ()))
 
 
 def tasks(folder: Path, seed: int, settings: CorpusSettings) -> Iterator[tuple[int, Task]]:

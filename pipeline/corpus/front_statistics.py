@@ -5,12 +5,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import yaml
 
-from pipeline import seeds
+from pipeline import params, seeds, yaml_text
 
 PATH = Path(__file__).resolve().parents[2] / "manifests" / "calibration" / "front.yaml"
 RESAMPLES = 4000
@@ -26,14 +24,14 @@ Interval = tuple[float, float]
 class Classes:
     """A room kind as the peers see it.
 
-    `word` occurs in the type's name; `counts` are objects by label, `labels` maps our categories to labels where they differ;
+    `word` occurs in the type's name; `counts` are objects by label, `map` maps our categories to labels where they differ;
     `mean` objects per room, `objects` those of single rooms; `most` objects and `side` [m] bound what their filters keep,
     `needs` are labels of which one must be there.
     """
 
     word: str
     counts: Mapping[str, int]
-    labels: Mapping[str, str]
+    map: Mapping[str, str]
     mean: float
     objects: tuple[int, ...]
     most: int
@@ -42,7 +40,7 @@ class Classes:
 
     def label(self, category: str) -> str | None:
         """Return the peers' label of a category, None where they have none."""
-        name = self.labels.get(category, category)
+        name = self.map.get(category, category)
         return name if name in self.counts else None
 
 
@@ -53,12 +51,13 @@ class Reference:
     classes: Mapping[str, Classes]
     furnished_rooms: tuple[int, ...]
     room_types: Mapping[str, int]
-    beyond: frozenset[str]
+    beyond: tuple[str, ...]
     areas: Mapping[str, tuple[int, float, float, float]]
     walkable: tuple[int, float, float, float]
     shares: Mapping[str, tuple[int, int]]
     defects: Mapping[str, tuple[int, int]]
     relations: Mapping[str, tuple[float, ...]]
+    version: int
 
     def counted(self, category: str) -> bool:
         """Whether the peers have a label for the category in any kind of room."""
@@ -68,22 +67,7 @@ class Reference:
 @functools.cache
 def load() -> Reference:
     """Read manifests/calibration/front.yaml."""
-    raw: dict[str, Any] = yaml.safe_load(PATH.read_text(encoding="utf-8"))
-    classes = {
-        name: Classes(k["word"], k["counts"], k["map"], k["mean"], tuple(k["objects"]), k["most"], k["side"], tuple(k["needs"]))
-        for name, k in raw["classes"].items()
-    }
-    return Reference(
-        classes,
-        tuple(raw["furnished_rooms"]),
-        raw["room_types"],
-        frozenset(raw["beyond"]),
-        {name: (n, mean, least, most) for name, (n, mean, least, most) in raw["areas"].items()},
-        tuple(raw["walkable"]),
-        {name: (n, of) for name, (n, of) in raw["shares"].items()},
-        {name: (n, of) for name, (n, of) in raw["defects"].items()},
-        {name: tuple(values) for name, values in raw["relations"].items()},
-    )
+    return params.build(Reference, yaml_text.parse(PATH.read_text(encoding="utf-8")), "front", "manifests/calibration/front.yaml")
 
 
 def bootstrap(values: Sequence[float]) -> Interval:

@@ -46,16 +46,11 @@ def write_model(model: Model, folder: Path, unit: float = 1.0) -> None:
     """
     folder.mkdir(parents=True, exist_ok=True)
     shape = shape_of(model)
-    finishes = list(dict.fromkeys(piece.finish for piece in shape.pieces()))
-    names = {finish: wavefront.material_name(finish, k) for k, finish in enumerate(finishes)}
     sheet = texture.atlas(shape.pieces())
-    groups = [
-        wavefront.Group(f"solid_{k + 1:03d}", names[finish], tuple(p for p in shape.pieces() if p.finish == finish))
-        for k, finish in enumerate(finishes)
-    ]
+    groups = wavefront.group_by_finish(shape.pieces(), "solid_{:03d}")
     text = wavefront.text(groups, "model.mtl", sheet)
     w, d, h = model.size
     (folder / "raw_model.obj").write_bytes(text.obj(unit))
     (folder / "normalized_model.obj").write_bytes(text.obj(1 / max(w, d, h), np.array([0.0, -h / 2, 0.0])))
-    (folder / "model.mtl").write_bytes(wavefront.mtl([(names[f], f) for f in finishes], "./texture.png"))
+    (folder / "model.mtl").write_bytes(wavefront.mtl(groups, "./texture.png"))
     (folder / "texture.png").write_bytes(texture.paint(seeds.generator(model.seed, "corpus.furniture.texture"), sheet))

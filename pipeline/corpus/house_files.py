@@ -1,18 +1,35 @@
-"""Houses as scene files, with the defects of real ones or without, each counted as it is written."""
+"""Houses as scene files, with the defects of real ones or without, each counted as it is written; and what params.yaml says about them."""
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 
 from pipeline.corpus import front_statistics
-from pipeline.corpus.calibration.tally import HouseTally, tally
+from pipeline.corpus.calibration import HouseTally, tally
 from pipeline.corpus.front_writer import DIALECTS, scene_json
 from pipeline.corpus.furniture.catalogue import catalogue
-from pipeline.corpus.furniture.level_tops import surfaces_of
 from pipeline.corpus.houses import corruption
 from pipeline.corpus.houses.house import make_house
-from pipeline.corpus.houses.stock import Stock
-from pipeline.corpus.settings import CorpusSettings
+from pipeline.corpus.houses.stock import Stock, surfaces_of
+from pipeline.errors import ContentError
 from pipeline.seeds import generator
+
+MOST_HOUSES = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class CorpusSettings:
+    """`houses` in number; `models` as a factor on the catalogue (1 is some hundreds); `corruption`: with the defects of real files."""
+
+    houses: int
+    models: float
+    corruption: bool
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.houses <= MOST_HOUSES:
+            raise ContentError(f"params.yaml: corpus.houses = {self.houses} is not valid", f"give a number from 1 to {MOST_HOUSES}")
+        if not 0 < self.models <= 100:
+            raise ContentError(f"params.yaml: corpus.models = {self.models} is not valid", "give a factor above 0, at most 100")
 
 
 def write_houses(folder: Path, seed: int, settings: CorpusSettings, indices: range) -> list[HouseTally]:

@@ -6,6 +6,7 @@ the base joint turns that into PartNet's world (z up, front -x): world = (-z, -x
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -17,8 +18,8 @@ from pipeline import seeds
 from pipeline.corpus.furniture import texture, wavefront
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import Model
-from pipeline.corpus.furniture.links import Component, Frame, LinkRecord, link_records, without_handles
-from pipeline.corpus.furniture.shape import Mover, Shape, colliders
+from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.shape import FRONT, Axis3, Mover, Piece, Pieces, Shape, colliders
 from pipeline.corpus.furniture.texture import Atlas
 from pipeline.corpus.furniture.wavefront import mesh_frame
 
@@ -30,7 +31,110 @@ CORNERS = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1), (-1, 1, -1),
 # PartNet's word for a moving link; storage furniture and tables turn "door" into this.
 ROTATION_DOOR = "rotation_door"
 FURNITURE = frozenset({"StorageFurniture", "Table"})
-JOINT_WORDS = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slider"}
+JOINT_WORDS = {"revolute": "hinge", "prismatic": "slider"}
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A mesh file: pieces of one finish on one link, or one handle; `number` counts the object's files."""
+
+    number: int
+    name: str
+    part: str
+    pieces: Pieces
+
+    @property
+    def file(self) -> str:
+        """Path of its OBJ file in the object's folder."""
+        return f"textured_objs/original-{self.number}.obj"
+
+    @property
+    def collides_as_seen(self) -> bool:
+        """Whether its own mesh serves collisions: no piece of it belongs to a group."""
+        return not any(piece.group for piece in self.pieces)
+
+    @property
+    def collision_file(self) -> str:
+        """Path of the OBJ file that it collides by."""
+        return self.file if self.collides_as_seen else f"textured_objs/convex-{self.number}.obj"
+
+
+@dataclass(frozen=True, slots=True)
+class LinkRecord:
+    """A link of the URDF. `mover` is None for the body and for handles, which are fixed to `parent`.
+
+    `origin` (3,) of its frame in the mesh frame, normalised; `part` the GAPartNet class or "".
+    """
+
+    name: str
+    parent: str
+    mover: Mover | None
+    origin: NDArray[np.float64]
+    components: tuple[Component, ...]
+    part: str
+    outward: Axis3
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """The normalisation: mesh = (mesh_frame(point) - centre) * scale."""
+
+    centre: NDArray[np.float64]
+    scale: float
+
+    def point(self, p: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return a point (..., 3) of our object frame in normalised mesh coordinates."""
+        return (mesh_frame(np.asarray(p, float)) - self.centre) * self.scale
+
+
+def link_records(shape: Shape, frame: Frame) -> list[LinkRecord]:
+    """Return the links of GAPartNet's cut: movers, then handles, then the body."""
+    movers: list[LinkRecord] = []
+    handles: list[LinkRecord] = []
+    grips = sum(len({p.name for p in mover.pieces if p.part}) for mover in shape.movers)
+    body = f"link_{len(shape.movers) + grips}"
+    names = {"base": body} | {mover.name: f"link_{k}" for k, mover in enumerate(shape.movers)}
+    number = 0
+    for mover in shape.movers:
+        components = _components(mover.pieces, number)
+        number += len(components)
+        name, origin = names[mover.name], frame.point(mover.origin)
+        own = tuple(c for c in components if not c.part)
+        movers.append(LinkRecord(name, names[mover.parent], mover, origin, own, mover.part_class, mover.outward))
+        for grip in (c for c in components if c.part):
+            handles.append(LinkRecord(f"link_{len(shape.movers) + len(handles)}", name, None, origin, (grip,), grip.part, mover.outward))
+    return [*movers, *handles, LinkRecord(body, "base", None, np.zeros(3), _components(shape.base, number), "", FRONT)]
+
+
+def _components(parts: Pieces, first: int) -> tuple[Component, ...]:
+    """Group pieces into mesh files: each handle by itself, the rest by what it is made of."""
+    finishes: dict[str, Finish] = {}
+    for piece in parts:  # what collides as one lies in one file, named by the finish that it shows most of
+        finishes.setdefault(piece.group, piece.finish)
+    groups: dict[tuple[str, Finish | str], list[Piece]] = {}
+    for piece in parts:
+        key = piece.name if piece.part else finishes[piece.group] if piece.group else piece.finish
+        groups.setdefault((piece.part, key), []).append(piece)
+    return tuple(Component(first + k, members[0].name, part, tuple(members)) for k, ((part, _), members) in enumerate(groups.items()))
+
+
+def without_handles(links: Sequence[LinkRecord]) -> list[LinkRecord]:
+    """Return the links of PartNet-Mobility's own cut: handles belong to their doors and drawers. Numbers close up."""
+    extra: dict[str, tuple[Component, ...]] = {}
+    for link in links:
+        if link.mover is None and link.part:
+            extra[link.parent] = extra.get(link.parent, ()) + link.components
+    kept = [link for link in links if link.mover is not None or not link.part]
+    old, body = links[-1].name, f"link_{len(kept) - 1}"
+    return [
+        replace(
+            link,
+            name=body if link.name == old else link.name,
+            parent=body if link.parent == old else link.parent,
+            components=link.components + extra.get(link.name, ()),
+        )
+        for link in kept
+    ]
 
 
 def write_partnet(models: Sequence[Model], folder: Path) -> None:
@@ -97,17 +201,15 @@ def urdf(name: str, links: Sequence[LinkRecord], frame: Frame) -> str:
             ET.SubElement(joint, "axis", xyz=_xyz(mesh_frame(np.array(mover.axis))))
         ET.SubElement(joint, "child", link=link.name)
         ET.SubElement(joint, "parent", link=link.parent)
-        if mover and mover.type != "continuous":
-            lower, upper = _range(mover, frame)
-            ET.SubElement(joint, "limit", lower=_number(lower), upper=_number(upper))
+        if mover:
+            ET.SubElement(joint, "limit", lower="0", upper=_number(_travel(mover, frame)))
     ET.indent(robot, "\t")
     return '<?xml version="1.0" ?>\n' + ET.tostring(robot, encoding="unicode") + "\n"
 
 
-def _range(mover: Mover, frame: Frame) -> tuple[float, float]:
-    """Return the joint's limits [rad or normalised units]."""
-    unit = frame.scale if mover.type == "prismatic" else 1.0
-    return mover.lower * unit, mover.upper * unit
+def _travel(mover: Mover, frame: Frame) -> float:
+    """Return how far a joint opens [rad or normalised units]."""
+    return mover.upper * (frame.scale if mover.type == "prismatic" else 1.0)
 
 
 def mobility(links: Sequence[LinkRecord], words: Sequence[tuple[str, str, str]], frame: Frame) -> list[dict[str, Any]]:
@@ -121,9 +223,9 @@ def mobility(links: Sequence[LinkRecord], words: Sequence[tuple[str, str, str]],
         mover = link.mover
         data: dict[str, Any] = {}
         if mover:
-            lower, upper = (np.degrees(v) if mover.type != "prismatic" else v for v in _range(mover, frame))
+            travel = _travel(mover, frame)
             sign = -1.0 if k % 2 else 1.0
-            limit = {"a": float(sign * lower), "b": float(sign * upper), "noLimit": mover.type == "continuous"}
+            limit = {"a": sign * 0.0, "b": float(sign * (np.degrees(travel) if mover.type == "revolute" else travel)), "noLimit": False}
             if mover.type == "prismatic":
                 limit |= {"rotates": False, "noRotationLimit": False, "rotationLimit": 0}
             direction = sign * mesh_frame(np.array(mover.axis))
@@ -200,13 +302,11 @@ def meta(model: Model, name: str) -> dict[str, str]:
 
 def _write_component(component: Component, frame: Frame, folder: Path, sheet: Atlas) -> None:
     """Write the OBJ and MTL of one component, a group per material; all components of an object share one texture."""
-    finishes = list(dict.fromkeys(piece.finish for piece in component.pieces))
-    names = {finish: wavefront.material_name(finish, k) for k, finish in enumerate(finishes)}
     stem = f"original-{component.number}"
-    groups = [wavefront.Group(stem, names[f], tuple(p for p in component.pieces if p.finish == f)) for f in finishes]
+    groups = wavefront.group_by_finish(component.pieces, stem)
     text = wavefront.text(groups, f"{stem}.mtl", sheet)
     (folder / f"{stem}.obj").write_bytes(text.obj(frame.scale, -frame.centre))
-    (folder / f"{stem}.mtl").write_bytes(wavefront.mtl([(names[f], f) for f in finishes], f"../{TEXTURE}"))
+    (folder / f"{stem}.mtl").write_bytes(wavefront.mtl(groups, f"../{TEXTURE}"))
     if not component.collides_as_seen:
         convex = wavefront.bare(f"convex-{component.number}", colliders(component.pieces))
         (folder / f"convex-{component.number}.obj").write_bytes(convex.obj(frame.scale, -frame.centre))

@@ -11,8 +11,7 @@ sys.path.insert(0, str(Path(__file__).parent / "houses"))
 from sample_houses import Box, house, stock
 
 from pipeline.corpus import front_statistics
-from pipeline.corpus.calibration import figures
-from pipeline.corpus.calibration.tally import HouseTally, RoomTally, relate, tally
+from pipeline.corpus.calibration import HouseTally, RoomTally, calibration, filter_rooms, relate, tally
 from pipeline.corpus.front_writer import scene_json
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.houses import corruption
@@ -78,7 +77,7 @@ def room(*categories, kind="bedroom", side=4.0, mirrored=False):
 def test_the_peers_filters_leave_out_what_they_would():
     bed = KNOWN.classes["bedroom"]
     good = room("double_bed", "nightstand", "lounge_chair")
-    assert figures.filter_rooms([good], bed) == [["double_bed", "nightstand", "chair"]]
+    assert filter_rooms([good], bed) == [["double_bed", "nightstand", "chair"]]
     for bad in (
         room("double_bed", "nightstand"),
         room("wardrobe", "nightstand", "nightstand"),
@@ -87,7 +86,7 @@ def test_the_peers_filters_leave_out_what_they_would():
         room(*good.categories, mirrored=True),
         room(*good.categories, kind="kidsroom"),
     ):
-        assert figures.filter_rooms([bad], bed) == []
+        assert filter_rooms([bad], bed) == []
 
 
 def test_intervals_hold_what_they_are_made_of():
@@ -113,7 +112,7 @@ def table():
         rng = generator(5, "front", index)
         home = corruption.disturb(rng, house(index), stock())
         tallies.append(tally(home, scene_json(home, "0.11", rng, corruption.litter(rng, home)), KNOWN))
-    return figures.calibration(tallies, catalogue(5).future, len(corruption.in_centimetres(5, catalogue(5).future)))
+    return calibration(tallies, catalogue(5).future, len(corruption.in_centimetres(5, catalogue(5).future)))
 
 
 def test_the_corpus_is_near_the_reference(table):
@@ -147,6 +146,6 @@ def test_without_mess_there_is_none():
 
 
 def test_a_table_without_houses_is_still_a_table():
-    assert figures.calibration(
+    assert calibration(
         [HouseTally(shares=dict.fromkeys((*KNOWN.shares, *KNOWN.defects), (0, 0)), relations={k: [] for k in KNOWN.relations})], [], 0
     )

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.corpus.furniture.catalogue import Catalogue, catalogue
-from pipeline.corpus.settings import CorpusSettings
+from pipeline.corpus.house_files import CorpusSettings
 from pipeline.errors import ContentError
 from stages import corpus
 

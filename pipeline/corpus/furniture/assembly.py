@@ -1,60 +1,31 @@
 """Assembly: a catalogue model becomes a shape of its exact size, by the function that the card of its category names."""
 
 import functools
+import importlib
 from collections.abc import Callable
 
 import numpy as np
 
 from pipeline import seeds
 from pipeline.card import cards
-from pipeline.corpus.furniture import (
-    appliances,
-    bath,
-    beds,
-    ceiling_lamps,
-    containers,
-    countertop,
-    desks,
-    dining_tables,
-    doorways,
-    electronics,
-    finishes,
-    homeware,
-    kids_beds,
-    kitchen,
-    lamps,
-    linen,
-    lounge,
-    plants,
-    seating,
-    shelves,
-    side_tables,
-    sofas,
-    stools,
-    storage,
-    tableware,
-    textiles,
-    wall_decor,
-)
+from pipeline.corpus.furniture import finishes
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.furniture.finishes import Scheme
-from pipeline.corpus.furniture.shape import Shape, Size, fit_to_size, frozen
+from pipeline.corpus.furniture.shape import Shape, fit_to_size, frozen
 from pipeline.errors import ContentError
 
-Builder = Callable[[np.random.Generator, str, Size, Scheme], Shape]
-
-MODULES = (
-    appliances, bath, beds, ceiling_lamps, containers, countertop, desks, doorways, electronics, homeware, kids_beds, kitchen, lamps, linen,
-    lounge, plants, seating, shelves, side_tables, sofas, stools, storage, dining_tables, tableware, textiles, wall_decor,
-)  # fmt: skip
+Builder = Callable[[np.random.Generator, str, float, float, float, Scheme], Shape]
 
 
 def builder(category: str) -> Builder:
     """Return the function that the card of a category names as "module.function". Raises ContentError where there is none."""
     module, _, name = cards()[category].corpus.builder.partition(".")
-    function: Builder | None = getattr(next((m for m in MODULES if m.__name__.endswith(f".{module}")), None), name, None)
-    if function is None:
-        raise ContentError(f"manifests/categories/{category}.yaml: no builder {module}.{name}", "see pipeline/corpus/furniture/assembly.py")
+    try:
+        function: Builder = getattr(importlib.import_module(f"{__package__}.{module}"), name)
+    except (ImportError, AttributeError):
+        raise ContentError(
+            f"manifests/categories/{category}.yaml: no builder {module}.{name}", "name a function of pipeline/corpus/furniture"
+        ) from None
     return function
 
 
@@ -76,5 +47,5 @@ def main_material(model: Model) -> str:
 def shape_of(model: Model) -> Shape:
     """Return the shape of a model, its box exactly `model.size`; static models have their movers fixed."""
     rng = seeds.generator(model.seed, "corpus.furniture.shape")
-    shape = fit_to_size(builder(model.category)(rng, model.form, model.size, scheme_of(model)), model.size)
+    shape = fit_to_size(builder(model.category)(rng, model.form, *model.size, scheme_of(model)), model.size)
     return shape if model.articulated else frozen(shape)

@@ -8,10 +8,10 @@ from typing import Literal
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.finishes import Material
 from pipeline.corpus.furniture.fronts import GAP, FrontStyle, Rect, Side, door, drawer, reach, sliding_door
 from pipeline.corpus.furniture.intervals import Interval, around, inset
-from pipeline.corpus.furniture.shape import Mover, Piece, Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, join_shapes, pieces
 from pipeline.corpus.furniture.solids import Solid, beam, box, rod
 
 Feet = Literal["plinth", "tapered", "square", "sled", "none", "hairpin"]
@@ -51,18 +51,28 @@ class Case:
     the sides, `nose` how far in front alone; `top` its finish; `gap` is left between fronts: thick doors need more, their inner edge swings wide.
     """
 
-    body: Finish
+    body: Material
     style: FrontStyle
     feet: Feet
     feet_height: float
-    feet_finish: Finish
-    top: Finish | None = None
+    feet_finish: Material
+    top: Material | None = None
     top_thickness: float = 0.022
     overhang: float = 0.0
     board: float = 0.018
     inset: bool = False
     gap: float = GAP
     nose: float = 0.0
+
+
+def drawers(count: int) -> tuple[Cell, ...]:
+    """Return so many equal drawers."""
+    return (Cell("drawer"),) * count
+
+
+def grid(count: int, *cells: Cell) -> list[Column]:
+    """Return so many equal columns."""
+    return [Column(1, cells)] * count
 
 
 def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve: float | None = None) -> Shape:
@@ -73,29 +83,24 @@ def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve
     face = -d / 2 + max(stand, how.overhang + how.nose)  # plane of the fronts
     x = around(w / 2 - how.overhang)
     y = (face if how.inset else face + how.style.thickness + 0.002, d / 2)
-    top = how.top_thickness
-    z = (how.feet_height, h - top)
-    base: list[Piece] = []
-    base += pieces("top", box(around(w / 2), (face - how.overhang - how.nose, d / 2), (z[1], h), 0.003), how.top or how.body)
+    z = (how.feet_height, h - how.top_thickness)
+    inner, within = inset(x, b), (z[0] + b, z[1])
+    base = pieces("top", box(around(w / 2), (face - how.overhang - how.nose, d / 2), (z[1], h), 0.003), how.top or how.body)
     base += pieces("side_left", box((x[0], x[0] + b), y, z, 0.0015), how.body)
     base += pieces("side_right", box((x[1] - b, x[1]), y, z, 0.0015), how.body)
-    inner = inset(x, b)
     base += pieces("bottom", box(inner, y, (z[0], z[0] + b)), how.body)
-    base += pieces("back", box(inner, (y[1] - BACK, y[1]), (z[0] + b, z[1])), how.body)
-    movers: list[Mover] = []
+    base += pieces("back", box(inner, (y[1] - BACK, y[1]), within), how.body)
     shares = np.cumsum([0.0, *(c.share for c in columns)]) / sum(c.share for c in columns)
     cuts = inner[0] + shares * (inner[1] - inner[0])
+    parts = [Shape(base)]
     for i, column in enumerate(columns):
         left = float(cuts[i]) + (b / 2 if i else 0)
         right = float(cuts[i + 1]) - (b / 2 if i < len(columns) - 1 else 0)
         if i:
-            base += pieces(f"divider_{i}", box((left - b, left), (y[0], y[1] - BACK), (z[0] + b, z[1])), how.body)
+            parts.append(Shape(pieces(f"divider_{i}", box((left - b, left), (y[0], y[1] - BACK), within), how.body)))
         outer = (left, right) if how.inset else (_half(left, b, first=i == 0), _half(right, -b, first=i == len(columns) - 1))
-        fixed, moving = _column(f"c{i}", column, (left, right), outer, y, (z[0] + b, z[1]), face, how)
-        base += fixed
-        movers += moving
-    base += feet(how.feet, x, (face + 0.01, d / 2), how.feet_height, how.feet_finish)
-    return Shape(tuple(base), tuple(movers))
+        parts.append(_column(f"c{i}", column, (left, right), outer, y, within, face, how))
+    return join_shapes(*parts, Shape(feet(how.feet, x, (face + 0.01, d / 2), how.feet_height, how.feet_finish)))
 
 
 def _half(edge: float, board: float, *, first: bool) -> float:
@@ -103,13 +108,10 @@ def _half(edge: float, board: float, *, first: bool) -> float:
     return edge - board if first else edge - board / 2
 
 
-def _column(
-    name: str, column: Column, x: Interval, outer: Interval, y: Interval, z: Interval, face: float, how: Case
-) -> tuple[list[Piece], list[Mover]]:
+def _column(name: str, column: Column, x: Interval, outer: Interval, y: Interval, z: Interval, face: float, how: Case) -> Shape:
     """Fill one column between `x`, its fronts over `outer`."""
     b = how.board
-    base: list[Piece] = []
-    movers: list[Mover] = []
+    parts: list[Shape] = []
     total = sum(c.share for c in column.cells)
     free = z[1] - z[0] - b * (len(column.cells) - 1)
     upper_edge = z[1]
@@ -118,54 +120,48 @@ def _column(
         low, high = upper_edge - height, upper_edge
         below = column.cells[k + 1].kind if k < len(column.cells) - 1 else ""
         if below and (how.inset or (cell.kind, below) != ("drawer", "drawer")):  # overlaid drawers need no rail between them
-            base += pieces(f"{name}_shelf_{k}", box(x, (y[0], y[1] - BACK), (low - b, low)), how.body)
+            parts.append(Shape(pieces(f"{name}_shelf_{k}", box(x, (y[0], y[1] - BACK), (low - b, low)), how.body)))
         if how.inset:
             rect = Rect(x, (low, high), face).shrunk(how.gap)
         else:
             bottom = low - (b if k == len(column.cells) - 1 else b / 2)
             rect = Rect(outer, (bottom, high + (b / 2 if k else 0)), face).shrunk(how.gap / 2)
         depth = (y[0] + (how.style.thickness + 0.002 if how.inset else 0.0), y[1] - BACK)
-        fixed, moving = _cell(f"{name}_{k}", cell, x, depth, (low, high), rect, how)
-        base += fixed
-        movers += moving
+        parts.append(_cell(f"{name}_{k}", cell, x, depth, (low, high), rect, how))
         upper_edge = low - b
-    return base, movers
+    return join_shapes(*parts)
 
 
-def _cell(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect: Rect, how: Case) -> tuple[list[Piece], list[Mover]]:
+def _cell(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect: Rect, how: Case) -> Shape:
     """Fill one compartment over `x`, `y`, `z` with its shelves and its front over `rect`."""
-    style = cell.panel or how.style
-    base: list[Piece] = []
-    movers: list[Mover] = []
     if cell.kind == "slide":
         return _sliding(name, cell, x, y, z, rect, how)
+    style = cell.panel or how.style
+    base: Pieces = ()
     setback = 0.004 if cell.kind == "open" else 0.02
     floor = z[0] + cell.inner * (INNER + GAP) + (0.016 if cell.inner else 0.0)
     for j in range(cell.shelves):
         level = floor + (z[1] - floor) * (j + 1) / (cell.shelves + 1)
         base += pieces(f"{name}_board_{j}", box(x, (y[0] + setback, y[1]), around(0.008, level)), how.body)
+    movers: tuple[Mover, ...] = ()
     square = math.radians(90)  # no farther, so that a wardrobe can stand in a corner and a nightstand beside its bed
     sides: dict[str, Side] = {"left": "left", "right": "right", "flap": "bottom", "lift": "top"}
     if cell.kind == "drawer":
-        movers.append(drawer(f"{name}_drawer", rect, style, (x, z, y[1]), how.body))
+        movers = (drawer(f"{name}_drawer", rect, style, (x, z, y[1]), how.body),)
     elif cell.kind == "pair":
         middle = (rect.x[0] + rect.x[1]) / 2
-        halves = (Rect((rect.x[0], middle - how.gap / 2), rect.z, rect.y), Rect((middle + how.gap / 2, rect.x[1]), rect.z, rect.y))
-        for half, leaf in zip(halves, ("left", "right"), strict=True):
-            movers.append(door(f"{name}_door_{leaf}", half, style, leaf, square))  # type: ignore[arg-type]
+        left = Rect((rect.x[0], middle - how.gap / 2), rect.z, rect.y)
+        right = Rect((middle + how.gap / 2, rect.x[1]), rect.z, rect.y)
+        movers = (door(f"{name}_door_left", left, style, "left", square), door(f"{name}_door_right", right, style, "right", square))
     elif cell.kind in sides:
-        movers.append(door(f"{name}_door", rect, style, sides[cell.kind], square))
+        movers = (door(f"{name}_door", rect, style, sides[cell.kind], square),)
     elif cell.kind == "blank":
         base += pieces(f"{name}_blank", box(rect.x, (rect.y, rect.y + style.thickness), rect.z, 0.002), style.finish)
-    if cell.inner:
-        fixed, moving = _inner(name, cell.inner, x, y, z[0], how, tuple(m.name for m in movers))
-        return base + fixed, movers + moving
-    return base, movers
+    shape = Shape(base, movers)
+    return join_shapes(shape, _inner(name, cell.inner, x, y, z[0], how, tuple(m.name for m in movers))) if cell.inner else shape
 
 
-def _inner(
-    name: str, count: int, x: Interval, y: Interval, bottom: float, how: Case, doors: tuple[str, ...]
-) -> tuple[list[Piece], list[Mover]]:
+def _inner(name: str, count: int, x: Interval, y: Interval, bottom: float, how: Case, doors: tuple[str, ...]) -> Shape:
     """Return drawers behind doors, under a board of their own: narrower than the cell, so that they pass the open doors."""
     inside = inset(x, 0.022)
     face = y[0] + 0.03
@@ -176,10 +172,10 @@ def _inner(
         rect = Rect(inside, (low + GAP, low + INNER - 0.03), face)
         drawers.append(drawer(f"{name}_inner_{j}", rect, style, (inside, (low, low + INNER), y[1]), how.body, after=doors))
     top = bottom + count * (INNER + GAP)
-    return list(pieces(f"{name}_inner_top", box(x, (face, y[1]), (top, top + 0.016)), how.body)), drawers
+    return Shape(pieces(f"{name}_inner_top", box(x, (face, y[1]), (top, top + 0.016)), how.body), tuple(drawers))
 
 
-def _sliding(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect: Rect, how: Case) -> tuple[list[Piece], list[Mover]]:
+def _sliding(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect: Rect, how: Case) -> Shape:
     """Return one or two pairs of leaves on two tracks before an interior of uprights, shelves and hat shelves."""
     style = cell.panel or how.style
     rear = rect.y + style.thickness + TRACK
@@ -187,7 +183,7 @@ def _sliding(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect:
     pairs = 2 if rect.width > 2.3 else 1
     half, lap = rect.width / pairs, 0.035
     wide = (half + lap) / 2
-    base: list[Piece] = []
+    base: Pieces = ()
     movers: list[Mover] = []
     cuts = [x[0]]
     for p in range(pairs):
@@ -208,10 +204,10 @@ def _sliding(name: str, cell: Cell, x: Interval, y: Interval, z: Interval, rect:
         for j in range(cell.shelves if i % 2 else 0):
             level = z[0] + (shelf - z[0]) * (j + 1) / (cell.shelves + 1)
             base += pieces(f"{name}_plank_{i}_{j}", box(ends, inside, (level, level + 0.016)), how.body)
-    return base, movers
+    return Shape(base, tuple(movers))
 
 
-def feet(kind: Feet, x: Interval, y: Interval, height: float, finish: Finish) -> Pieces:
+def feet(kind: Feet, x: Interval, y: Interval, height: float, finish: Material) -> Pieces:
     """Return what a piece stands on, under the rectangle `x`, `y`, from the floor to `height` [m]."""
     if height <= 0 or kind == "none":
         return ()

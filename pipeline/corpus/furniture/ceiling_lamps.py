@@ -1,19 +1,16 @@
 """Pendant and ceiling lamps. The origin is the bottom of the box, as of all objects. Lengths in metres."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from pipeline.corpus.furniture.bent import curve, tube, turns
-from pipeline.corpus.furniture.finishes import GLOW, Scheme, pick
+from pipeline.corpus.furniture.finishes import Scheme, pick
 from pipeline.corpus.furniture.intervals import around, polar
-from pipeline.corpus.furniture.lamps import turned_along
-from pipeline.corpus.furniture.shades import bulb, cord, rose, shade, shade_word
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.lamps import bulb, cord, rose, shade, shade_word, turned_along
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, ring, rod, slab
 
-CRYSTAL = replace(GLOW, name="crystal", color=(0.82, 0.86, 0.88), roughness=0.05, opacity=0.55, density=2500)
 THIN = 0.0035  # radius of a cord
 
 
@@ -22,14 +19,13 @@ SHARES = {  # height of a shade in its widths
 }  # fmt: skip
 
 
-def pendant_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def pendant_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a shade or globe on a cord, a bar over a table, a cluster, a chandelier, a lantern, a sputnik, or a cage."""
-    w, d, h = size
     if form == "linear" and d > w:  # built along x, turned to the longer side
-        return turned_along(pendant_lamp(rng, form, (d, w, h), scheme))
+        return turned_along(pendant_lamp(rng, form, d, w, h, scheme))
     build = {"linear": _linear, "cluster": _cluster, "chandelier": _chandelier, "sputnik": _sputnik}.get(form)
     if build:
-        return Shape(build(rng, size, scheme))
+        return Shape(build(rng, w, d, h, scheme))
     kind = form if form in ("globe", "lantern", "cage") else shade_word(rng, scheme, "globe lantern cage crystal paper")
     tall = min(0.66 * h, SHARES.get(kind, 0.6) * w)
     return Shape(shade(rng, scheme, kind, w / 2, (0.0, tall)) + _hung(tall - 0.002, h, scheme))
@@ -40,14 +36,13 @@ def _hung(z: float, h: float, scheme: Scheme) -> Pieces:
     return pieces("cord", cord((z, h - 0.024)), scheme.handle) + pieces("rose", rose(h), scheme.handle)
 
 
-def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _linear(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     metal = scheme.handle
     parts = pieces("rose", box(around(0.3 * w), (-0.035, 0.035), (h - 0.024, h), 0.004), metal)
     if rng.random() < 0.35:  # one long beam of light
         deep = min(0.05, 0.4 * d)
         parts += pieces("beam", box(around(w / 2), around(d / 2 if d < 0.12 else deep), (0.02, 0.075), 0.006), metal)
-        parts += pieces("light", box(around(0.49 * w), around(0.8 * deep), (0.0, 0.02), 0.003), GLOW)
+        parts += pieces("light", box(around(0.49 * w), around(0.8 * deep), (0.0, 0.02), 0.003), "glow")
         return parts + pieces("cord", [rod((s * 0.28 * w, 0, 0.075), (s * 0.28 * w, 0, h - 0.024), THIN, n=6) for s in (-1, 1)], metal)
     z = min(0.24, 0.36 * h)
     parts += pieces("bar", rod((-0.49 * w, 0, z + 0.05), (0.49 * w, 0, z + 0.05), 0.011, n=10), metal)
@@ -64,8 +59,7 @@ def _linear(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts
 
 
-def _cluster(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _cluster(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     count = int(rng.integers(3, 7))
     r = 0.2 * min(w, d) if min(w, d) > 0.3 else 0.34 * min(w, d)
     squash = min(1.0, d / w)
@@ -80,9 +74,8 @@ def _cluster(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts
 
 
-def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _chandelier(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Arms that swing out and up from a turned stem, each with a small shade or a candle, drops of glass below."""
-    w, _, h = size
     metal = scheme.handle
     r, body = w / 2, min(0.62 * h, 0.8 * w)
     steps = [(0.012, 0.0), (0.05, 0.06), (0.02, 0.14), (0.055, 0.24), (0.02, 0.36), (0.03, 0.6), (0.012, 0.8), (0.02, 0.95), (0.006, 1.0)]
@@ -97,16 +90,15 @@ def _chandelier(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
         if crystal:
             parts += pieces("candle", rod((x, y, z + 0.016), (x, y, z + 0.09), 0.011, n=8), scheme.front) + bulb(z + 0.09, 0.045, (x, y))
             drop = [(0.002, 0.02 * body), (0.014, 0.09 * body), (0.004, 0.19 * body)]
-            parts += pieces("drops", revolve(drop, 6, (0.8 * r * math.cos(a), 0.8 * r * math.sin(a))), CRYSTAL)
+            parts += pieces("drops", revolve(drop, 6, (0.8 * r * math.cos(a), 0.8 * r * math.sin(a))), "crystal")
         else:
             parts += shade(rng, scheme, "bell", 0.175 * r, (z + 0.03, z + 0.03 + 0.3 * r), (x, y), 12)
             parts += pieces("candle", rod((x, y, z + 0.016), (x, y, z + 0.03 + 0.26 * r), 0.008, n=6), metal)
     return parts + _hung(body - 0.002, h, scheme)
 
 
-def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _sputnik(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Rods in all directions from a ball, a lit globe on each."""
-    w, d, h = size
     count, r = 12, 0.09 * min(w, d)
     middle = np.array([0, 0, min(0.66 * h, 0.9 * min(w, d)) / 2])
     z = float(middle[2])
@@ -119,22 +111,21 @@ def _sputnik(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
         out = np.array([x * (w / 2 - r), y * (d / 2 - r), up * (z - r)])
         unit = out / np.linalg.norm(out)
         parts += pieces("rods", rod(middle + 0.85 * r * unit, middle + out - 0.9 * r * unit, 0.005, n=6), scheme.handle)
-        parts += pieces("globes", [s.moved(middle + out) for s in globe], GLOW)
+        parts += pieces("globes", [s.moved(middle + out) for s in globe], "glow")
     return parts + _hung(z + 0.8 * r, h, scheme)
 
 
-def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a disc, a square panel, a ring, a rain of crystal, a lattice frame or a row of spots; tall ones hang in tiers."""
-    w, d, h = size
     metal, squash = scheme.handle, d / w
     if form == "crystal" or (h > 0.3 and form != "spots"):
-        return Shape(_rain(form, size, scheme))
+        return Shape(_rain(form, w, d, h, scheme))
     if form == "frame":
-        return Shape(_lattice(size, scheme))
+        return Shape(_lattice(w, d, h, scheme))
     if form == "spots":
-        return Shape(_spots(rng, size, scheme))
+        return Shape(_spots(rng, w, d, h, scheme))
     if form == "ring":
-        parts = pieces("ring", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32, squash=squash), GLOW)
+        parts = pieces("ring", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32, squash=squash), "glow")
         parts += pieces("hoop", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0.4 * h, 0.6 * h), 32, squash=squash), metal)
         bars = [box(around(0.42 * w), (-0.012, 0.012), (0.6 * h, 0.72 * h)), box((-0.012, 0.012), around(0.42 * d), (0.72 * h, 0.84 * h))]
         return Shape(parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
@@ -146,12 +137,11 @@ def ceiling_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     else:
         mount = [box(around(w / 2), around(d / 2), (0.45 * h, h), 0.004)]
         diffuser = [cushion(around(0.47 * w), around(0.47 * d), (0, 0.45 * h), min(0.03, 0.2 * h), 2)]
-    return Shape(pieces("mount", mount, finish) + pieces("diffuser", diffuser, GLOW))
+    return Shape(pieces("mount", mount, finish) + pieces("diffuser", diffuser, "glow"))
 
 
-def _spots(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _spots(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a bar with a row of spots that look down, each a little another way."""
-    w, d, h = size
     metal = scheme.handle
     parts = pieces("bar", box(around(w / 2), (-0.03, 0.03), (h - 0.03, h), 0.003), metal)
     r, long = min(0.045, 0.3 * h, 0.2 * d), min(0.14, 0.9 * (h - 0.04))
@@ -163,9 +153,8 @@ def _spots(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("ends", [box(around(0.08 * w), around(d / 2), (h - 0.02, h))] if d > 0.07 else [], metal)
 
 
-def _rain(form: str, size: Size, scheme: Scheme) -> Pieces:
+def _rain(form: str, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build rods in three tiers that hang from a plate: of crystal, or lit."""
-    w, d, h = size
     edged = form in ("square", "frame")
     plate = revolve([(0.5 * w, h - 0.03), (0.5 * w, h - 0.008), (0.47 * w, h)], 28)
     if edged:
@@ -178,13 +167,12 @@ def _rain(form: str, size: Size, scheme: Scheme) -> Pieces:
         for a in turns(max(10, int(22 * (1 - 0.3 * k))), 0.1 * k):
             x, y = polar(r / max(abs(math.cos(a)), abs(math.sin(a))) if edged else r, a)
             rods.append(rod((x, y * d / w, low), (x, y * d / w, h - 0.03), 0.007, n=5))
-        parts += pieces("drops", rods, CRYSTAL if form == "crystal" else GLOW)
+        parts += pieces("drops", rods, "crystal" if form == "crystal" else "glow")
     return parts
 
 
-def _lattice(size: Size, scheme: Scheme) -> Pieces:
+def _lattice(w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a lit box in a wooden frame with a grid before it."""
-    w, d, h = size
     t = 0.03
     x, y = w / 2, d / 2
     inner_x, inner_y = around(x - t), around(y - t)
@@ -193,4 +181,4 @@ def _lattice(size: Size, scheme: Scheme) -> Pieces:
     bars = [box(around(0.006, a), inner_y, (0.011, 0.02)) for a in np.linspace(*inner_x, 5)[1:-1]]
     bars += [box(inner_x, around(0.006, b), (0.002, 0.011)) for b in np.linspace(*inner_y, 5)[1:-1]]
     light = box(inner_x, inner_y, (0.02, h - 0.01))
-    return pieces("frame", frame, scheme.timber) + pieces("light", light, GLOW) + pieces("lattice", bars, scheme.timber)
+    return pieces("frame", frame, scheme.timber) + pieces("light", light, "glow") + pieces("lattice", bars, scheme.timber)

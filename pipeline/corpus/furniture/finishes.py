@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, TypeVar
+from pathlib import Path
+from typing import Any, Literal, TypeVar
 
 import numpy as np
+import yaml
 
-from pipeline import style
+from pipeline import params, style
 from pipeline.style import Color, StyleSpec
 
 Thing = TypeVar("Thing")
@@ -14,6 +16,19 @@ Pattern = Literal[
     "plain", "grain", "weave", "speckle", "leather", "boucle", "velvet", "brushed", "concrete", "marble", "terrazzo", "stripe", "check", "floral",
     "cane", "knit", "leaf", "rug_border", "rug_diamonds", "rug_stripes", "art_blocks", "art_hills", "art_circles", "art_lines", "dial",
 ]  # fmt: skip
+FILE = "manifests/furniture.yaml"
+PATH = Path(__file__).resolve().parents[3] / FILE
+MANNERS: Mapping[str, StyleSpec] = {name: known.spec for name, known in style.load().styles.items()}
+CLASSIC, ORIENTAL = (style.load().groups[name] for name in ("classic", "oriental"))
+COLOURS = style.load().colours
+WOODS, LACQUERS, FABRICS, LEATHERS, METALS = (COLOURS[kind] for kind in ("woods", "lacquers", "fabrics", "leathers", "metals"))
+CLOTH_GROUNDS: Color = (0.72, 0.68, 0.60)  # the light thread of striped, checked and flowered cloth
+_KNOWN: dict[str, Any] = yaml.safe_load(PATH.read_text(encoding="utf-8"))
+PALETTES: Mapping[str, tuple[Color, ...]] = params.convert(Mapping[str, tuple[Color, ...]], _KNOWN["palettes"], "palettes", FILE)
+PROFILES: Mapping[str, tuple[tuple[float, ...], ...]] = params.convert(
+    Mapping[str, tuple[tuple[float, ...], ...]], _KNOWN["profiles"], "profiles", FILE
+)
+SUPER_CATEGORIES: Mapping[str, str] = _KNOWN["super_categories"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,40 +69,9 @@ class Scheme:
     stone: Finish
 
 
-MANNERS: Mapping[str, StyleSpec] = {name: known.spec for name, known in style.load().styles.items()}
-CLASSIC, ORIENTAL = (style.load().groups[name] for name in ("classic", "oriental"))
-COLOURS = style.load().colours
-WOODS, LACQUERS, FABRICS, LEATHERS, METALS = (COLOURS[kind] for kind in ("woods", "lacquers", "fabrics", "leathers", "metals"))
-CLOTH_GROUNDS: Color = (0.72, 0.68, 0.60)  # the light thread of striped, checked and flowered cloth
-
-CERAMIC = Finish("ceramic", (0.86, 0.86, 0.85), 0.12, density=2300)
-GLASS = Finish("glass", (0.75, 0.83, 0.84), 0.05, 0.0, 0.28, density=2500)
-DARK_GLASS = Finish("dark_glass", (0.02, 0.022, 0.025), 0.08, density=2500)
-MIRROR = Finish("mirror", (0.85, 0.87, 0.88), 0.03, 1.0, density=2500)
-STEEL = Finish("stainless_steel", (0.56, 0.57, 0.58), 0.28, 0.9, pattern="brushed", density=2400)
-ENAMEL = Finish("enamel_white", (0.82, 0.82, 0.81), 0.25, density=900)
-GRAPHITE = Finish("enamel_graphite", (0.09, 0.093, 0.10), 0.3, density=900)
-PLASTIC = Finish("plastic_dark", (0.04, 0.04, 0.042), 0.45, density=1000)
-PLASTIC_WHITE = Finish("plastic_white", (0.72, 0.72, 0.70), 0.4, density=1000)
-GLOW = Finish("lamp_glass", (0.92, 0.88, 0.78), 0.5, density=400)
-BEDDING = Finish("bedding", (0.80, 0.78, 0.74), 0.9, pattern="weave", density=45)
-MATTRESS = Finish("mattress", (0.74, 0.72, 0.67), 0.9, pattern="knit", density=55)
-LEAF = Finish("leaf", (0.05, 0.17, 0.035), 0.6, pattern="leaf", density=300)
-SOIL = Finish("soil", (0.045, 0.03, 0.02), 0.95, pattern="speckle", density=1100)
-MARBLE = Finish("marble", (0.80, 0.79, 0.77), 0.15, pattern="marble", density=2600, second=(0.30, 0.30, 0.31))
-STONE = Finish("stone", (0.10, 0.10, 0.105), 0.3, pattern="speckle", density=2500)
-PAPER = Finish("paper", (0.86, 0.83, 0.76), 0.9, density=300)
-STONES: Mapping[str, Finish] = {
-    "marble": MARBLE,
-    "dark_marble": Finish("dark_marble", (0.03, 0.03, 0.033), 0.15, pattern="marble", density=2600, second=(0.55, 0.52, 0.46)),
-    "green_marble": Finish("green_marble", (0.03, 0.11, 0.075), 0.15, pattern="marble", density=2600, second=(0.55, 0.62, 0.55)),
-    "travertine": Finish("travertine", (0.62, 0.53, 0.42), 0.45, pattern="concrete", density=2300),
-    "terrazzo": Finish("terrazzo", (0.74, 0.72, 0.68), 0.3, pattern="terrazzo", density=2300, second=(0.30, 0.14, 0.09)),
-    "concrete": Finish("concrete", (0.36, 0.36, 0.35), 0.75, pattern="concrete", density=2200),
-    "sintered": Finish("sintered_stone", (0.30, 0.29, 0.28), 0.4, pattern="concrete", density=2400),
-    "glass": GLASS,
-    "smoked_glass": Finish("smoked_glass", (0.06, 0.06, 0.065), 0.05, 0.0, 0.45, density=2500),
-}
+Material = Finish | str
+"""A finish, or the name of one in manifests/furniture.yaml."""
+FINISHES = {key: params.build(Finish, {"name": key} | entry, f"finishes.{key}", FILE) for key, entry in _KNOWN["finishes"].items()}
 
 
 def pick(rng: np.random.Generator, words: str) -> str:
@@ -98,6 +82,11 @@ def pick(rng: np.random.Generator, words: str) -> str:
 def one_of(rng: np.random.Generator, things: Sequence[Thing]) -> Thing:
     """Draw one of the things."""
     return things[int(rng.integers(len(things)))]
+
+
+def draw_material(rng: np.random.Generator, *materials: Material) -> Material:
+    """Draw one of some materials."""
+    return one_of(rng, materials)
 
 
 def wood(rng: np.random.Generator, name: str) -> Finish:
@@ -160,5 +149,5 @@ def scheme(rng: np.random.Generator, style: str) -> Scheme:
     if second.name == soft.name:
         second = replace(second, name=f"{second.name}_2", color=shade(rng, second.color, 0.5))
     accent = tube if rng.random() < manner.tube else timber
-    stone = STONES[pick(rng, manner.stones)]
+    stone = FINISHES[pick(rng, manner.stones)]
     return Scheme(body, front, accent, tube, soft, second, material, style, manner, timber, stone)

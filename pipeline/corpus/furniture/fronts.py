@@ -1,27 +1,155 @@
-"""Fronts that move: hinged and sliding doors, drawers, lids, dials and buttons, with their handles. Fronts look towards -Y."""
+"""Fronts: panels from a plain board to louvres, and what moves: doors, drawers, lids, dials and buttons with their handles. They look towards -Y."""
+
+from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.finishes import Material
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, inset
-from pipeline.corpus.furniture.panels import LIP, FrontStyle, HandleStyle, PanelStyle, Rect, panel
-from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, pieces
-from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, standing
+from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, group_pieces, pieces
+from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, slab, stack, standing
 
-__all__ = ["FrontStyle", "HandleStyle", "PanelStyle", "Rect", "button", "door", "drawer", "handle", "knob", "lid", "panel", "sliding_door"]
+PanelStyle = Literal["slab", "shaker", "raised", "glass", "dark_glass", "slats", "reeded", "cane", "mirror"]
+HandleStyle = Literal["bar", "long", "flat", "knob", "ring", "cup", "edge", "groove", "none"]
 
+LIP = 0.024  # height of the strip that a hand reaches behind, of fronts without handles [m]
 Side = Literal["left", "right", "bottom", "top"]
-
 GAP = 0.003  # between a front and its neighbours [m]
 RUN = 0.004  # between a drawer and what it runs in [m]
 BOARD = 0.012  # walls of a drawer [m]
 TURN = 1.5 * math.pi  # of a dial [rad]
 REACHES: dict[HandleStyle, float] = {"bar": 0.032, "long": 0.032, "flat": 0.024, "knob": 0.026, "ring": 0.016, "cup": 0.022, "edge": 0.014}
-MARK = Finish("mark", (0.75, 0.75, 0.73), 0.5, density=1000)
+
+
+@dataclass(frozen=True, slots=True)
+class Rect:
+    """A front's place: intervals in x and z, and the plane y of its face [m]."""
+
+    x: Interval
+    z: Interval
+    y: float
+
+    @property
+    def width(self) -> float:
+        """Extent in x."""
+        return self.x[1] - self.x[0]
+
+    @property
+    def height(self) -> float:
+        """Extent in z."""
+        return self.z[1] - self.z[0]
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """Its middle (x, z)."""
+        return ((self.x[0] + self.x[1]) / 2, (self.z[0] + self.z[1]) / 2)
+
+    def shrunk(self, by: float) -> Rect:
+        """Return the place with a gap all around."""
+        return Rect(inset(self.x, by), inset(self.z, by), self.y)
+
+
+@dataclass(frozen=True, slots=True)
+class FrontStyle:
+    """How the fronts of one model look. `thickness` [m]."""
+
+    panel: PanelStyle
+    handle: HandleStyle
+    finish: Material
+    metal: Material
+    thickness: float = 0.019
+
+
+def panel(rect: Rect, style: FrontStyle) -> Pieces:
+    """Return the panel of a front; whatever it is made of, it collides as one board."""
+    parts = _panel(rect, style)
+    return parts if len(parts) == 1 else group_pieces(parts, "front")
+
+
+def _panel(rect: Rect, style: FrontStyle) -> Pieces:
+    y, t = rect.y, style.thickness
+    rail = min(0.065, 0.22 * min(rect.width, rect.height))
+    depth = (y, y + t)
+    if style.handle == "groove" and style.panel == "slab" and rect.height > 2 * LIP:
+        low = (rect.z[0], rect.z[1] - LIP)
+        face = pieces("front", box(rect.x, depth, low, 0.0025), style.finish)
+        return face + pieces("front_lip", box(rect.x, (y + 0.011, y + t), (low[1], rect.z[1])), style.finish)
+    if style.panel == "slab" or rail < 0.022:
+        return pieces("front", box(rect.x, depth, rect.z, 0.0025), style.finish)
+    if style.panel == "reeded":
+        back = pieces("front", box(rect.x, (y + 0.007, y + t), rect.z, 0.002), style.finish)
+        return back + pieces("front_reeds", _reeds(rect, 0.007), style.finish)
+    if style.panel == "mirror":
+        back = pieces("front", box(rect.x, (y + 0.005, y + t), rect.z, 0.002), style.finish)
+        edge = 0.012
+        pane = box(inset(rect.x, edge), (y, y + 0.005), inset(rect.z, edge), 0.0015)
+        return back + pieces("front_mirror", pane, "mirror")
+    inner = Rect(inset(rect.x, rail), inset(rect.z, rail), y)
+    return pieces("front_frame", frame(rect, inner, depth), style.finish) + _filling(inner, style)
+
+
+def frame(rect: Rect, inner: Rect, depth: Interval, bevel: float = 0.002) -> list[Solid]:
+    """Return stiles and rails around `inner`, over the interval `depth` in y [m]."""
+    return [
+        box((rect.x[0], inner.x[0]), depth, rect.z, bevel),
+        box((inner.x[1], rect.x[1]), depth, rect.z, bevel),
+        box(inner.x, depth, (rect.z[0], inner.z[0]), bevel),
+        box(inner.x, depth, (inner.z[1], rect.z[1]), bevel),
+    ]
+
+
+def _filling(inner: Rect, style: FrontStyle) -> Pieces:
+    """Return what a frame holds."""
+    y, t = inner.y, style.thickness
+    if style.panel == "slats":
+        return pieces("front_slats", _louvres(inner, t), style.finish)
+    if style.panel in ("glass", "dark_glass"):
+        parts = pieces("front_glass", box(inner.x, (y + 0.006, y + 0.012), inner.z), "glass" if style.panel == "glass" else "dark_glass")
+        if style.panel == "glass" and inner.height > 0.7:  # a glazing bar
+            middle = inner.middle[1]
+            parts += pieces("front_bar", box(inner.x, (y + 0.003, y + 0.006), around(0.011, middle)), style.finish)
+        return parts
+    if style.panel == "cane":
+        return pieces("front_cane", box(inner.x, (y + 0.006, y + 0.010), inner.z), "woven_cane")
+    parts = pieces("front_panel", box(inner.x, (y + 0.009, y + t - 0.002), inner.z), style.finish)
+    if style.panel == "raised" and min(inner.width, inner.height) > 0.08:
+        field = min(0.035, 0.25 * min(inner.width, inner.height))
+        low = np.array([(inner.x[0], inner.z[0]), (inner.x[1], inner.z[0]), (inner.x[1], inner.z[1]), (inner.x[0], inner.z[1])])
+        high = low + np.array([(field, field), (-field, field), (-field, -field), (field, -field)])
+        rings = [np.column_stack([o[:, 0], np.full(4, at), o[:, 1]]) for o, at in ((low, y + 0.009), (high, y + 0.002))]
+        parts += pieces("front_field", stack(rings), style.finish)
+    return parts
+
+
+def _louvres(inner: Rect, thickness: float) -> list[Solid]:
+    """Return tilted slats, one above the other."""
+    count = min(18, max(3, round(inner.height / 0.045)))
+    pitch = inner.height / count
+    middle, half = inner.y + thickness / 2, 0.5 * thickness - 0.003
+    slats = []
+    for i in range(count):
+        z = inner.z[0] + (i + 0.5) * pitch
+        slat = box(inner.x, around(0.003, middle), around(0.56 * pitch, z))
+        angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
+        slats.append(slat.turned("x", -angle, (0.0, middle, z)))
+    return slats
+
+
+def _reeds(rect: Rect, proud: float) -> list[Solid]:
+    """Return upright half-round strips side by side, `proud` [m] in front of the board."""
+    count = min(18, max(4, round(rect.width / 0.028)))
+    pitch = rect.width / count
+    turns = np.linspace(math.pi, 2 * math.pi, 5)
+    strips = []
+    for i in range(count):
+        x = rect.x[0] + (i + 0.5) * pitch
+        outline = np.stack([x + 0.46 * pitch * np.cos(turns), rect.y + proud + proud * np.sin(turns)], axis=1)
+        strips.append(slab(outline, rect.z))
+    return strips
 
 
 def reach(handle: HandleStyle) -> float:
@@ -139,7 +267,7 @@ def sliding_door(name: str, rect: Rect, style: FrontStyle, towards: float, trave
 
 
 def drawer(
-    name: str, rect: Rect, style: FrontStyle, cell: tuple[Interval, Interval, float], inside: Finish, *, after: tuple[str, ...] = ()
+    name: str, rect: Rect, style: FrontStyle, cell: tuple[Interval, Interval, float], inside: Material, *, after: tuple[str, ...] = ()
 ) -> Mover:
     """Return a drawer: a front over `rect`, and a bottom, two sides and a back that run in its cell.
 
@@ -186,32 +314,32 @@ def lid(name: str, parts: Pieces, hinge: tuple[float, float, float], upper: floa
     return Mover(name, parts, "revolute", (-1, 0, 0), hinge, upper, "hinge_lid", "lid", UP, parent)
 
 
-def knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float = 0.022) -> Mover:
+def knob(name: str, at: Axis3, radius: float, finish: Material, *, depth: float = 0.022) -> Mover:
     """Return a dial on a front plane; `at` is its middle on the plane."""
     profile = [(radius, 0.001), (radius, 0.35 * depth), (0.82 * radius, depth)]
     dial = standing(revolve(profile, 16), at)
     mark = box(around(0.0015, at[0]), (at[1] - depth - 0.002, at[1] - depth), (at[2], at[2] + 0.75 * radius))
-    parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
+    parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, "mark", group="knob")
     return Mover(name, parts, "revolute", (0, 1, 0), at, TURN, "hinge_knob", "knob")
 
 
-def top_knob(name: str, at: Axis3, radius: float, finish: Finish, *, depth: float) -> Mover:
+def top_knob(name: str, at: Axis3, radius: float, finish: Material, *, depth: float) -> Mover:
     """Return a dial on a level plane, seen from above; `at` is its middle on the plane."""
     dial = revolve([(radius, at[2] + 0.001), (radius, at[2] + 0.4 * depth), (0.85 * radius, at[2] + depth)], 12, (at[0], at[1]))
     top = at[2] + depth
     mark = box(around(0.0015, at[0]), (at[1] - 0.75 * radius, at[1]), (top, top + 0.002))
-    parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, MARK, group="knob")
+    parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, "mark", group="knob")
     return Mover(name, parts, "revolute", (0, 0, -1), at, TURN, "hinge_knob", "knob", UP)
 
 
-def button(name: str, x: Interval, z: Interval, y: float, finish: Finish) -> Mover:
+def button(name: str, x: Interval, z: Interval, y: float, finish: Material) -> Mover:
     """Return a push button that stands 8 mm out of the plane `y` and is pressed by 4 mm."""
     cap = box(x, (y - 0.008, y - 0.0045), z, 0.001)
     at = ((x[0] + x[1]) / 2, y, (z[0] + z[1]) / 2)
     return Mover(name, pieces("button", cap, finish), "prismatic", (0, 1, 0), at, 0.004, "slider_button", "button")
 
 
-def top_button(name: str, x: Interval, y: Interval, z: Interval, finish: Finish, press: float) -> Mover:
+def top_button(name: str, x: Interval, y: Interval, z: Interval, finish: Material, press: float) -> Mover:
     """Return a button on a level plane: its cap over `x`, `y`, `z` goes down by `press` [m]."""
     cap = box(x, y, z, 0.001)
     at = ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2, z[1])

@@ -1,26 +1,107 @@
-"""What people leave about: frames, candles, trays, bottles, jars, kettles, toys, herbs, televisions, coat hooks."""
+"""What hangs on walls (the back at the wall, +y), and what people leave about: frames, candles, trays, bottles, jars, toys, televisions."""
+
+from dataclasses import replace
 
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
-from pipeline.corpus.furniture.finishes import CERAMIC, FABRICS, LACQUERS, LEAF, PAPER, WOODS, Finish, Scheme, one_of, pick, shade
-from pipeline.corpus.furniture.intervals import around, corners, polar
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, pillow, revolve, ring, rod, slab, standing
-from pipeline.corpus.furniture.tableware import CLEAR, glaze
-from pipeline.corpus.furniture.wall_decor import INKS, frame_boards
-from pipeline.style import Color
+from pipeline.corpus.furniture.finishes import (
+    FABRICS,
+    FINISHES,
+    LACQUERS,
+    PALETTES,
+    WOODS,
+    Finish,
+    Material,
+    Pattern,
+    Scheme,
+    one_of,
+    pick,
+    shade,
+)
+from pipeline.corpus.furniture.fronts import Rect, frame
+from pipeline.corpus.furniture.intervals import Interval, around, corners, polar
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, Vector, box, circle, cushion, pillow, revolve, ring, rod, slab, standing
+from pipeline.corpus.furniture.tableware import glaze
 
-SCREEN = Finish("screen", (0.008, 0.009, 0.011), 0.08, density=1200)
-SHELL = Finish("shell", (0.02, 0.02, 0.022), 0.35, density=1100)
-WAX: tuple[Color, ...] = ((0.78, 0.74, 0.64), (0.55, 0.32, 0.24), (0.30, 0.36, 0.30), (0.68, 0.55, 0.52))
-FRUIT: tuple[Color, ...] = ((0.62, 0.05, 0.03), (0.70, 0.30, 0.02), (0.45, 0.52, 0.05), (0.72, 0.58, 0.05))
-CONTENTS: tuple[Color, ...] = ((0.62, 0.48, 0.28), (0.16, 0.07, 0.03), (0.74, 0.70, 0.60), (0.50, 0.26, 0.08), (0.30, 0.34, 0.12))
+
+def frame_boards(w: float, h: float, wide: float, y: Interval, bevel: float = 0.002) -> list[Solid]:
+    """Return four boards around a rectangle `w` x `h` whose lower edge is at z = 0."""
+    x = w / 2
+    return frame(Rect((-x, x), (0.0, h), y[0]), Rect(around(x - wide), (wide, h - wide), y[0]), y, bevel)
 
 
-def television(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def picture(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+    """Build a framed print with a mount, a bare canvas, or a pair of prints."""
+    back = d / 2
+    pattern: Pattern = pick(rng, "art_blocks art_hills art_circles art_lines")  # type: ignore[assignment]
+    art = replace(FINISHES[f"print_{rng.integers(6)}"], pattern=pattern)
+    if form == "canvas":
+        return Shape(pieces("canvas", box(around(w / 2), (-back, back), (0.0, h), 0.003), art))
+    frame = scheme.timber if rng.random() < 0.5 else scheme.handle
+    spans = [(-w / 2, w / 2)] if form == "framed" else [(-w / 2, -0.02 * w), (0.02 * w, w / 2)]
+    parts: Pieces = ()
+    for k, (x0, x1) in enumerate(spans):
+        wide = x1 - x0
+        rim = 0.018 + 0.02 * scheme.manner.ornament
+        at = np.array([(x0 + x1) / 2, 0.0, 0.0])
+        mount = 0.12 * min(wide, h)
+        sheet = box(around(wide / 2 - rim), (back - 0.008, back), (rim, h - rim))
+        inner = box(around(wide / 2 - rim - mount), (back - 0.011, back - 0.008), (rim + mount, h - rim - mount))
+        parts += pieces(f"frame_{k}", [s.moved(at) for s in frame_boards(wide, h, rim, (-back, back))], frame)
+        parts += pieces(f"mount_{k}", sheet.moved(at), "paper") + pieces(f"print_{k}", inner.moved(at), art)
+    return Shape(parts)
+
+
+def mirror(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+    """Build a mirror in a rectangular or a round frame, or in a sunburst."""
+    back = d / 2
+    frame = scheme.handle if rng.random() < 0.55 else scheme.timber
+    if form == "rectangle":
+        rim = 0.02 + 0.035 * scheme.manner.ornament
+        glass = box(around(w / 2 - rim), (back - 0.012, back - 0.004), (rim, h - rim))
+        return Shape(pieces("frame", frame_boards(w, h, rim, (-back, back), 0.004), frame) + pieces("mirror", glass, "mirror"))
+    r = min(w, h) / 2
+    rim = 0.6 * r if form == "sunburst" else 0.93 * r
+    outer = 1.06 * rim if form == "sunburst" else r
+    parts = pieces("mirror", standing([slab(circle(rim, 36), (0.0, 0.006))], (0, back - 0.004, h / 2)), "mirror")
+    parts += pieces("frame", standing(ring((outer, outer), (rim, rim), (0.0, d), 36), (0, back, h / 2)), frame)
+    if form != "sunburst":
+        return Shape(parts)
+    y, lengths = back - 0.012, (r, 0.84 * r)
+    rays = [rod(_upright(outer, a, y, h / 2), _upright(lengths[k % 2], a, y, h / 2), 0.007, 0.002, 6) for k, a in enumerate(turns(24))]
+    return Shape(parts + pieces("rays", rays, frame))
+
+
+def clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+    """Build a round wall clock with a dial, or one with bare marks on a ring."""
+    back, r = d / 2, w / 2
+    at = (0, back, h / 2)
+    rim = scheme.handle if rng.random() < 0.6 else scheme.timber
+    if form == "dial":
+        dial = "light_dial" if rng.random() < 0.7 else "dark_dial"
+        parts = pieces("dial", standing([slab(circle(0.9 * r, 32), (0.0, 0.5 * d))], at), dial)
+        return Shape(parts + pieces("rim", standing(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), at), rim))
+    hub = standing(revolve([(0.2 * r, 0.0), (0.2 * r, 0.7 * d), (0.12 * r, d)], 20), at)
+    hoop = standing(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), at)
+    y, bar_y = (back - 0.8 * d, back - 0.4 * d), (back - 0.6 * d, back - 0.45 * d)
+    marks = [box(around(0.02 * r), y, (0.74 * r, r)).turned("y", a).moved((0, 0, h / 2)) for a in turns(12)]
+    hands = [box(around(0.015 * r), bar_y, (0.2 * r, q * r)).turned("y", a).moved((0, 0, h / 2)) for q, a in ((0.5, 1.05), (0.72, -1.05))]
+    spokes = [(_upright(0.2 * r, a, back - 0.15 * d, h / 2), _upright(0.8 * r, a, back - 0.15 * d, h / 2)) for a in turns(4)]
+    parts = pieces("ring", hoop, rim) + pieces("hub", hub, rim)
+    parts += pieces("spokes", [rod(*ends, 0.1 * d, n=6) for ends in spokes], rim) + pieces("marks", marks, rim)
+    return Shape(parts + pieces("hands", hands, Finish("marks", shade(rng, FABRICS["charcoal"], 0.1), 0.5, density=900)))
+
+
+def _upright(radius: float, angle: float, y: float, z: float) -> Vector:
+    """Return the point at an angle around (y, z), in a plane that faces the front."""
+    x, up = polar(radius, angle)
+    return (x, y, z + up)
+
+
+def television(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a flat television on a foot in the middle, or on two feet."""
-    w, d, h = size
     low = 0.06 * h
     panel = box(around(w / 2), (-0.015, 0.02), (low, h), 0.003)
     glass = box(around(w / 2 - 0.008), (-0.017, -0.015), (low + 0.016, h - 0.008))
@@ -30,32 +111,32 @@ def television(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     else:
         feet = [box(around(0.012, s * 0.36 * w), around(d / 2), (0.0, 0.012), 0.003) for s in (-1, 1)]
         feet += [box(around(0.01, s * 0.36 * w), (-0.01, 0.015), (0.012, low)) for s in (-1, 1)]
-    return Shape(pieces("panel", [panel, belly], SHELL) + pieces("screen", glass, SCREEN) + pieces("feet", feet, SHELL))
+    return Shape(pieces("panel", [panel, belly], "shell") + pieces("screen", glass, "screen") + pieces("feet", feet, "shell"))
 
 
-def photo_frame(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def photo_frame(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a framed photograph that leans back on a strut, upright or oblong."""
-    w, d, h = size
-    paper, ink = one_of(rng, INKS)
-    art = Finish("photo", paper, 0.4, pattern=pick(rng, "art_hills art_circles art_blocks"), density=400, second=ink)  # type: ignore[arg-type]
+    paper = FINISHES[f"print_{rng.integers(6)}"]
+    art = replace(paper, name="photo", roughness=0.4, pattern=pick(rng, "art_hills art_circles art_blocks"))  # type: ignore[arg-type]
     frame = scheme.timber if rng.random() < 0.5 else scheme.handle
     rim, front = 0.1 * w, -d / 2 + 0.006
     slope = 0.5 * d / h
     boards = lean(frame_boards(w, h, rim, around(0.006, front)), 0.0, slope)
     sheet = lean([box(around(w / 2 - rim), (front - 0.001, front + 0.004), (rim, h - rim))], 0.0, slope)
     strut = lean([box(around(0.1 * w), (d / 2 - 0.008, d / 2), (0.0, 0.75 * h))], 0.0, -0.45 * d / h)
-    return Shape(pieces("frame", boards, frame) + pieces("photo", sheet, art) + pieces("strut", strut, SHELL))
+    return Shape(pieces("frame", boards, frame) + pieces("photo", sheet, art) + pieces("strut", strut, "shell"))
 
 
-def candle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def candle(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a pillar candle on a dish, one in a glass, or a thin one on a stick."""
-    w, _, h = size
     r = w / 2
-    wax = Finish("wax", shade(rng, one_of(rng, WAX), 0.08), 0.5, density=900)
-    wick = pieces("wick", rod((0, 0, 0.93 * h), (0, 0, h), 0.0015, n=6), SHELL)
+    wax = Finish("wax", shade(rng, one_of(rng, PALETTES["wax"]), 0.08), 0.5, density=900)
+    wick = pieces("wick", rod((0, 0, 0.93 * h), (0, 0, h), 0.0015, n=6), "shell")
     if form == "glass":
         body = slab(circle(0.86 * r, 16), (0.02 * h, 0.62 * h))
-        return Shape(pieces("wax", body, wax) + pieces("glass", ring((r, r), (0.87 * r, 0.87 * r), (0.0, 0.9 * h), 12), CLEAR) + wick)
+        return Shape(
+            pieces("wax", body, wax) + pieces("glass", ring((r, r), (0.87 * r, 0.87 * r), (0.0, 0.9 * h), 12), "clear_glass") + wick
+        )
     if form == "stick":
         stand = revolve([(r, 0.0), (0.9 * r, 0.04 * h), (0.2 * r, 0.09 * h), (0.16 * r, 0.42 * h)], 16)
         stand += revolve([(0.16 * r, 0.42 * h), (0.4 * r, 0.5 * h)], 12)
@@ -66,9 +147,8 @@ def candle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
     return Shape(pieces("stick" if form == "stick" else "dish", stand, scheme.handle) + pieces("wax", body, wax) + wick)
 
 
-def tray(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def tray(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a tray with a rim: oblong with two grips, or round."""
-    w, d, h = size
     finish = scheme.timber if rng.random() < 0.6 else scheme.front
     if form == "round":
         floor = slab(circle(0.49 * w, 24), (0.0, 0.25 * h))
@@ -82,9 +162,8 @@ def tray(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Sha
     return Shape(pieces("tray", solids, finish) + pieces("grips", grips, scheme.handle))
 
 
-def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def bottle(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bottle: of soap with a pump, of shampoo, of wine, of oil."""
-    w, _, h = size
     r = w / 2
     color = LACQUERS[pick(rng, "white sage blush ivory terracotta dusty_blue anthracite")]
     if form == "pump":
@@ -94,41 +173,38 @@ def bottle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         soap = Finish("soap", shade(rng, color, 0.1), 0.3, density=900)
         return Shape(pieces("body", body, soap) + pieces("pump", head, scheme.handle))
     if form == "shampoo":
-        finish = Finish("plastic", shade(rng, color, 0.1), 0.35, density=900)
+        finish: Material = Finish("plastic", shade(rng, color, 0.1), 0.35, density=900)
         body = [slab(circle(r, 14, squash=0.62), z) for z in ((0.0, 0.25 * h), (0.6 * h, 0.86 * h))]
-        top = pieces("cap", slab(circle(0.6 * r, 12, squash=0.8), (0.86 * h, h), 0.003), SHELL)
+        top = pieces("cap", slab(circle(0.6 * r, 12, squash=0.8), (0.86 * h, h), 0.003), "shell")
         band = slab(circle(r, 14, squash=0.62), (0.25 * h, 0.6 * h))
     else:
-        finish = Finish("dark_glass", (0.02, 0.05, 0.025) if form == "wine" else (0.30, 0.24, 0.05), 0.08, density=1400)
+        finish = "wine_glass" if form == "wine" else "oil_glass"
         body = revolve([(0.95 * r, 0.0), (r, 0.02 * h), (r, 0.18 * h)], 14)
         body += revolve([(r, 0.48 * h), (r, 0.6 * h), (0.7 * r, 0.68 * h), (0.32 * r, 0.76 * h)], 14)
         top = pieces("neck", slab(circle(0.32 * r, 12), (0.76 * h, h), 0.002), finish)
         band = slab(circle(r, 14), (0.18 * h, 0.48 * h))
-    label = Finish("label", (0.76, 0.74, 0.68), 0.7, density=900)
-    return Shape(pieces("body", body, finish) + top + pieces("label", band, label))
+    return Shape(pieces("body", body, finish) + top + pieces("label", band, "label"))
 
 
-def canister(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def canister(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a jar for the kitchen: of glass with what it holds, or of pottery, with a lid."""
-    w, _, h = size
     r = w / 2
     lid = scheme.timber if rng.random() < 0.6 else scheme.handle
     top = [slab(circle(0.96 * r, 16), (0.86 * h, 0.94 * h), 0.003), slab(circle(0.25 * r, 12), (0.94 * h, h), 0.002)]
     if form == "glass":
-        food = Finish("food", shade(rng, one_of(rng, CONTENTS), 0.15), 0.9, pattern="speckle", density=700)
+        food = Finish("food", shade(rng, one_of(rng, PALETTES["food"]), 0.15), 0.9, pattern="speckle", density=700)
         inside = slab(circle(0.9 * r, 16), (0.02 * h, 0.86 * h * float(rng.uniform(0.45, 0.9))))
         jar = ring((r, r), (0.91 * r, 0.91 * r), (0.0, 0.86 * h), 12)
-        return Shape(pieces("food", inside, food) + pieces("jar", jar, CLEAR) + pieces("lid", top, lid))
+        return Shape(pieces("food", inside, food) + pieces("jar", jar, "clear_glass") + pieces("lid", top, lid))
     body = revolve([(0.9 * r, 0.0), (r, 0.04 * h), (r, 0.82 * h), (0.92 * r, 0.86 * h)], 16)
     return Shape(pieces("jar", body, glaze(rng)) + pieces("lid", top, lid))
 
 
-def kettle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def kettle(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a kettle with spout and handle: an electric one on its base, or one for the stove."""
-    w, d, h = size
     r = 0.5 * min(d, 0.75 * w)
     x = -w / 2 + r
-    finish = Finish("steel", (0.62, 0.62, 0.62), 0.25, 0.9, density=900)
+    finish: Material = "kettle_steel"
     if rng.random() >= 0.6:
         finish = Finish("enamel", shade(rng, LACQUERS[pick(rng, "white sage navy barn_red mint")]), 0.3, density=900)
     tall = 0.86 * h if form == "electric" else 0.7 * h
@@ -143,28 +219,25 @@ def kettle(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> S
         side = [(w / 2 - 0.01, 0.86 * tall), (w / 2 - 0.012, 0.3 * tall)]
         bow, thick = [(x + 0.7 * r, 0.9 * tall), *side, (x + 0.9 * r, 0.16 * tall)], 0.011
     grip = tube(curve([(px, 0, z) for px, z in bow], 2), thick, 6)
-    return Shape(pieces("body", [*body, spout], finish) + pieces("lid", top, SHELL) + pieces("grip", grip, SHELL))
+    return Shape(pieces("body", [*body, spout], finish) + pieces("lid", top, "shell") + pieces("grip", grip, "shell"))
 
 
-def cutting_board(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def cutting_board(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a board that lies with a knife on it, or a block of knives."""
-    w, d, h = size
     timber = Finish("board", shade(rng, WOODS[pick(rng, "beech oak walnut bamboo")]), 0.5, pattern="grain", density=650)
     board = box(around(w / 2), around(d / 2), (0.0, 0.6 * h), 0.004)
-    steel = Finish("blade", (0.66, 0.66, 0.66), 0.2, 0.95, density=7800)
     y = 0.2 * d
     blade = box((-0.1 * w, 0.3 * w), (y - 0.018, y + 0.012), (0.6 * h, 0.6 * h + 0.002))
     grip = box((-0.34 * w, -0.1 * w), around(0.011, y), (0.6 * h, h), 0.003)
-    parts = pieces("board", board, timber) + pieces("blade", blade, steel) + pieces("grip", grip, SHELL)
+    parts = pieces("board", board, timber) + pieces("blade", blade, "blade") + pieces("grip", grip, "shell")
     if form == "bread":
         loaf = cushion((-0.34 * w, 0.2 * w), (-0.42 * d, -0.02 * d), (0.6 * h, 0.6 * h + 0.075), 0.032, 3)
         parts += pieces("bread", loaf, Finish("crust", shade(rng, (0.42, 0.20, 0.06)), 0.9, pattern="speckle", density=300))
     return Shape(parts)
 
 
-def fruit_bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def fruit_bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bowl of fruit: wide and low, or on a foot."""
-    w, _, h = size
     r = w / 2
     finish = Finish("turned_wood", shade(rng, WOODS["walnut"]), 0.5, pattern="grain", density=650) if rng.random() < 0.5 else glaze(rng)
     low = 0.0 if form == "low" else 0.3 * h
@@ -180,15 +253,14 @@ def fruit_bowl(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
 
 
 def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, number: int) -> Pieces:
-    color = one_of(rng, FRUIT)
+    color = one_of(rng, PALETTES["fruit"])
     rounds = [(0.3 * r, -r), (0.75 * r, -0.75 * r), (r, -0.1 * r), (0.8 * r, 0.7 * r), (0.3 * r, r)]
     solids = [s.moved(at) for s in revolve(rounds, 10)]
     return pieces(f"fruit_{number}", solids, Finish("fruit", shade(rng, color, 0.2), 0.4, density=800))
 
 
-def toy(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def toy(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a toy: a bear that sits, a ball, a car, or a tower of blocks."""
-    w, d, h = size
     bright = [Finish(f"paint_{n}", shade(rng, LACQUERS[n], 0.1), 0.35, density=300) for n in ("coral", "sky", "lemon", "mint")]
     if form == "ball":
         r = min(w, d, h) / 2
@@ -206,7 +278,7 @@ def toy(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
         body.append(cushion((-0.28 * w, 0.3 * w), around(0.34 * d), (0.6 * h, h), 0.02, 2))
         wheel = slab(circle(0.18 * h, 12), around(0.06 * d))
         wheels = [s for x, y in corners(0.3 * w, 0.42 * d) for s in standing([wheel], (x, y, 0.18 * h))]
-        return Shape(pieces("body", body, one_of(rng, bright)) + pieces("wheels", wheels, SHELL))
+        return Shape(pieces("body", body, one_of(rng, bright)) + pieces("wheels", wheels, "shell"))
     fur = Finish("fur", shade(rng, (0.36, 0.22, 0.10) if rng.random() < 0.6 else (0.66, 0.58, 0.48)), 0.95, pattern="boucle", density=80)
     bear = [
         pillow(around(0.26 * w), (-0.2 * d, 0.35 * d), (0.0, 0.58 * h), 3),
@@ -218,9 +290,8 @@ def toy(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shap
     return Shape(pieces("bear", bear, fur))
 
 
-def pen_cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def pen_cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a cup with pens in it, round or square."""
-    w, _, h = size
     r, tall = w / 2, 0.55 * h
     cup = slab(circle(r, 14), (0.0, tall)) if form == "round" else box((-r, r), (-r, r), (0.0, tall), 0.003)
     parts = pieces("cup", cup, scheme.front if rng.random() < 0.5 else scheme.handle)
@@ -231,38 +302,33 @@ def pen_cup(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> 
     return Shape(parts)
 
 
-def alarm_clock(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def alarm_clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build an alarm clock: a round one on four feet, or a box with figures."""
-    w, d, h = size
     if form == "box":
         case = box(around(w / 2), (-d / 2 + 0.002, d / 2), (0.0, h), 0.006)
         figures = box(around(0.42 * w), (-d / 2, -d / 2 + 0.002), (0.2 * h, 0.8 * h))
-        green = Finish("figures", (0.02, 0.10, 0.08), 0.2, density=900)
-        return Shape(pieces("case", case, scheme.timber) + pieces("figures", figures, green))
+        return Shape(pieces("case", case, scheme.timber) + pieces("figures", figures, "figures"))
     r = min(w, 0.86 * h) / 2
     z = h - r
     body = standing([slab(circle(r, 20), (0.0, 0.7 * d))], (0, 0.35 * d, z))
     body += [rod((s * 0.6 * r, t * 0.3 * d, 0.0), (s * 0.45 * r, t * 0.2 * d, z - 0.8 * r), 0.006, n=6) for s, t in corners(1, 1)]
     dial = standing([slab(circle(0.88 * r, 20), (0.0, 0.004))], (0, -0.35 * d, z))
-    face = Finish("dial", (0.82, 0.81, 0.78), 0.5, pattern="dial", density=900, second=(0.03, 0.03, 0.03))
-    return Shape(pieces("case", body, scheme.handle) + pieces("dial", dial, face))
+    return Shape(pieces("case", body, scheme.handle) + pieces("dial", dial, "light_dial"))
 
 
-def tissue_box(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def tissue_box(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a box of tissues, oblong or a cube, with one drawn out."""
-    w, d, h = size
     x = w / 2 if form == "flat" else min(w, d) / 2
     finish = scheme.timber
     if rng.random() >= 0.4:
         finish = Finish("card", shade(rng, LACQUERS[pick(rng, "white sage blush dusty_blue greige")]), 0.7, density=300)
     body = box((-x, x), around(d / 2), (0.0, 0.7 * h), 0.003)
     sheet = blades(np.array([(0, 0, 0.69 * h), (0.004, 0, 0.69 * h)]), np.array([(-0.02, 0.006, h), (0.025, -0.006, 0.94 * h)]), 0.07)
-    return Shape(pieces("box", body, finish) + pieces("tissue", sheet, PAPER))
+    return Shape(pieces("box", body, finish) + pieces("tissue", sheet, "paper"))
 
 
-def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def coat_hooks(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a board with hooks, a coat or a bag on some of them; the back is at the wall (+y)."""
-    w, d, h = size
     back = d / 2
     count = max(4, round(w / 0.14))
     xs = np.linspace(-w / 2 + 0.06, w / 2 - 0.06, count).tolist()
@@ -282,15 +348,14 @@ def coat_hooks(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     return Shape(parts)
 
 
-def potted_herb(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def potted_herb(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a small plant in a pot: a succulent's rosette, a tuft of herbs, or a trailing one."""
-    w, _, h = size
     tall, count, rise = {"succulent": (0.62 * h, 14, 0.6), "herb": (0.45 * h, 26, 1.0), "grass": (0.4 * h, 22, 1.0)}[form]
     r = 0.36 * w
-    pot = glaze(rng) if rng.random() < 0.7 else CERAMIC
+    pot = glaze(rng) if rng.random() < 0.7 else "ceramic"
     parts = pieces("pot", revolve([(0.74 * r, 0.0), (r, tall)], 14), pot)
-    parts += pieces("soil", slab(circle(0.86 * r, 12), (tall, tall + 0.002)), SHELL)
-    green = Finish("leaf", shade(rng, LEAF.color, 0.25), 0.6, pattern="leaf", density=300)
+    parts += pieces("soil", slab(circle(0.86 * r, 12), (tall, tall + 0.002)), "shell")
+    green = Finish("leaf", shade(rng, FINISHES["leaf"].color, 0.25), 0.6, pattern="leaf", density=300)
     angle = np.arange(count) * 2.4
     share = (np.arange(count) + 1) / count
     out = (1 - 0.7 * share) * 0.5 * w if form != "herb" else rng.uniform(0.1, 1.0, count) * 0.5 * w

@@ -1,16 +1,138 @@
-"""Floor, wall and table lamps. The origin is the bottom of the box, as of all objects. Lengths in metres."""
+"""Lamp shades, floor, wall and table lamps. The origin is the bottom of the box, as of all objects. Lengths in metres."""
 
+import itertools
 import math
 from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import curve, tube, turns
-from pipeline.corpus.furniture.finishes import GLOW, Scheme
-from pipeline.corpus.furniture.intervals import around, polar
-from pipeline.corpus.furniture.shades import shade, shade_word
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import box, circle, revolve, rod, slab, standing
+from pipeline.corpus.furniture.bent import band, curve, tube, turns
+from pipeline.corpus.furniture.finishes import PROFILES, Finish, Material, Scheme, cane, one_of
+from pipeline.corpus.furniture.finishes import shade as tinted
+from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, standing
+
+WALL = 0.006
+
+
+DOME = tuple((math.cos(a), math.sin(a) / math.sin(1.25)) for a in np.linspace(0.0, 1.25, 5))
+
+
+def shade_word(rng: np.random.Generator, scheme: Scheme, without: str) -> str:
+    """Draw a form of shade that the style likes."""
+    words = [word for word in scheme.manner.shades.split() if word not in without.split()] or ["drum"]
+    return one_of(rng, words)
+
+
+def cord(z: Interval) -> list[Solid]:
+    """Return a cord in the middle from z[0] up to z[1]."""
+    return [rod((0, 0, z[0]), (0, 0, z[1]), 0.0035, n=6)]
+
+
+def rose(h: float) -> list[Solid]:
+    """Return the canopy at the ceiling, at height `h`."""
+    return revolve([(0.055, h - 0.024), (0.055, h - 0.006), (0.9 * 0.055, h)], 20)
+
+
+def bulb(z: float, tall: float, at: Spot) -> Pieces:
+    """Return a bulb that stands on `z`."""
+    profile = [(0.2 * tall, z), (0.42 * tall, z + 0.45 * tall), (0.34 * tall, z + 0.75 * tall), (0.1 * tall, z + tall)]
+    return pieces("bulb", revolve(profile, 10, at), "glow")
+
+
+def shade(rng: np.random.Generator, scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot = (0.0, 0.0), n: int = 24) -> Pieces:
+    """Return a shade of `radius` over heights `z`: hollow with a bulb and spokes in it, or a lit globe."""
+    if kind in ("globe", "paper"):
+        return _ball(scheme, kind, radius, z, at, n)
+    if kind in ("lantern", "cage"):
+        return (_lantern if kind == "lantern" else _cage)(scheme, radius, z)
+    metal, weave = scheme.handle, cane(rng)
+    shares = DOME if kind == "dome" else PROFILES[f"{kind}_shade"]
+    profile = [(r * radius, z[0] + q * (z[1] - z[0])) for r, q in shares]
+    dome = metal if rng.random() < 0.6 else scheme.front
+    covers: dict[str, Material] = {"rattan": weave, "cone": scheme.front, "dome": dome, "mushroom": scheme.front, "crystal": "glow"}
+    cover = covers.get(kind, "shade_cloth")
+    if cover == "shade_cloth" and rng.random() < 0.3:
+        cover = Finish("shade_linen", tinted(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
+    return pieces("shade", _walls(kind, profile, at, n), cover) + _fittings(radius, profile[-1][0], z, at, metal)
+
+
+def _ball(scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot, n: int) -> Pieces:
+    """Build a lit globe with its cap, or a squat ball of paper on a neck."""
+    low, high = z
+    tall, squat = high - low, 1.0 if kind == "globe" else 0.92
+    angles = np.linspace(-1.45, 1.45, 11 if n > 16 else 8)
+    steps = [(radius * math.cos(a), low + tall / 2 + tall / 2 * math.sin(a) / math.sin(1.45)) for a in angles]
+    parts = pieces("globe", revolve([(r, q * squat + low * (1 - squat)) if kind == "paper" else (r, q) for r, q in steps], n, at), "glow")
+    if kind == "paper":
+        return parts + pieces("neck", revolve([(0.12 * radius, low + squat * tall), (0.12 * radius, high)], 10, at), scheme.timber)
+    if tall > 0.08 and n > 16:
+        parts += pieces("cap", revolve([(0.3 * radius, high - 0.02 * tall), (0.24 * radius, high)], 12, at), scheme.handle)
+    return parts
+
+
+def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
+    """Build the wall of an open shade around a profile of (radius, height): rings of n sides, or pleats."""
+    walls: list[Solid] = []
+    for (r0, z0), (r1, z1) in itertools.pairwise(profile):
+        if kind != "pleated":
+            walls += ring((r0, r1), (max(r0 - WALL, 0.3 * r0), max(r1 - WALL, 0.3 * r1)), (z0, z1), n, at)
+            continue
+        middle = r1 + 0.5 * (r0 - r1)
+        path = np.array([polar(middle * (0.965 if k % 2 else 1.0), a) for k, a in enumerate(turns(36))])
+        for stave in band(path, 0.005, (z0, z1), closed=True):
+            grow = np.where(np.arange(8) < 4, r0, r1) / (0.5 * (r0 + r1))
+            walls.append(Solid(stave.vertices * np.column_stack([grow, grow, np.ones(8)]), stave.faces).moved((*at, 0.0)))
+    return walls
+
+
+def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Material) -> Pieces:
+    """Build the spokes that carry an open shade whose upper rim has radius `top`, its socket and its bulb, where there is room for them."""
+    low, high = z
+    tall = high - low
+    parts: Pieces = ()
+    if top > 0.05:
+        middle = np.array([*at, high - 0.03 * tall - 0.004])
+        spokes = [rod(middle - s * np.array(polar(top - 0.5 * WALL, 0.3, 0)), middle, 0.0025, n=5) for s in (-1, 1)]
+        parts += pieces("spider", spokes, metal)
+    if tall > 0.16 and radius > 0.06:
+        parts += pieces("socket", revolve([(0.014, high - 0.45 * tall), (0.014, high - 0.02 * tall)], 8, at), metal)
+        parts += bulb(high - 0.45 * tall - 0.07, 0.07, at)
+    return parts
+
+
+def _lantern(scheme: Scheme, radius: float, z: Interval) -> Pieces:
+    """Four paper panes in a frame of thin wood with a cap and a foot."""
+    low, high = z
+    r = min(radius / math.sqrt(2) * 1.35, radius)
+    t = 0.016
+    span, inner = (low + 0.012, high - 0.03), around(r - t)
+    frame = [box(around(t / 2, x), around(t / 2, y), span, 0.002) for x, y in corners(r - t / 2, r - t / 2)]
+    levels = [(q, q + 0.006) for q in np.linspace(low, high, 5)[1:-1].tolist()]
+    frame += [box(around(0.003, s * (r - 0.3 * t)), inner, level) for s in (-1, 1) for level in levels]
+    frame += [box(inner, around(0.003, s * (r - 0.3 * t)), level) for s in (-1, 1) for level in levels]
+    caps = ((radius, (high - 0.03, high - 0.015), 0.003), (0.6 * radius, (high - 0.015, high), 0.003), (r, (low, low + 0.012), 0.002))
+    frame += [box(around(half), around(half), level, bevel) for half, level, bevel in caps]
+    panes = [box(around(0.002, s * (r - 0.7 * t)), inner, span) for s in (-1, 1)]
+    panes += [box(inner, around(0.002, s * (r - 0.7 * t)), span) for s in (-1, 1)]
+    return pieces("frame", frame, scheme.timber) + pieces("panes", panes, "glow")
+
+
+def _cage(scheme: Scheme, radius: float, z: Interval) -> Pieces:
+    """Bent wires around a bare bulb, hoops that hold them, a cap with the socket."""
+    low, high = z
+    tall, metal = high - low, scheme.handle
+    shape = [(0.34, 0.0), (0.8, 0.14), (1.0, 0.42), (0.8, 0.7), (0.3, 0.9)]
+    parts: Pieces = ()
+    for a in turns(8):
+        path = curve([polar(r * radius - 0.004, a, low + q * tall) for r, q in shape], 1)
+        parts += pieces("wires", tube(path, 0.0035, 5), metal)
+    hoop = tube([polar(0.34 * radius + 0.002, a, low + 0.004) for a in turns(12)], 0.004, 5, closed=True)
+    cap = revolve([(0.36 * radius, high - 0.12 * tall), (0.36 * radius, high - 0.05 * tall), (0.1 * radius, high)], 14)
+    foot = slab(circle(0.3 * radius, 10), (low + 0.002, low + 0.004))
+    parts += pieces("hoop", hoop, metal) + pieces("cap", cap, metal) + pieces("foot", foot, metal)
+    return parts + bulb(high - 0.12 * tall - 0.5 * tall, 0.5 * tall, (0.0, 0.0))
 
 
 def turned_along(shape: Shape) -> Shape:
@@ -18,21 +140,19 @@ def turned_along(shape: Shape) -> Shape:
     return Shape(tuple(replace(p, solid=p.solid.turned("z", math.pi / 2)) for p in shape.base))
 
 
-def floor_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a shade on a pole or on three legs, or globes on a stem."""
-    w, _, h = size
     r = w / 2
     if form == "globes":
-        return Shape(_stem_of_globes(rng, size, scheme))
+        return Shape(_stem_of_globes(rng, w, d, h, scheme))
     kind = shade_word(rng, scheme, "globe cage lantern paper crystal mushroom cylinder")
     tall = min(0.26 * h, 0.95 * w)
     parts = shade(rng, scheme, kind, r, (h - tall, h))
-    return Shape(parts + (_tripod(rng, size, tall, scheme) if form == "tripod" else _pole(rng, size, tall, scheme)))
+    return Shape(parts + (_tripod(rng, w, d, h, tall, scheme) if form == "tripod" else _pole(rng, w, d, h, tall, scheme)))
 
 
-def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> Pieces:
+def _tripod(rng: np.random.Generator, w: float, d: float, h: float, tall: float, scheme: Scheme) -> Pieces:
     """Build three legs, the hub on them, sometimes a shelf between them; the shade above is `tall`."""
-    w, _, h = size
     r, metal = w / 2, scheme.handle
     top = h - tall
     ends = [polar(0.95 * r, a) for a in turns(3, math.pi / 2)]
@@ -43,9 +163,8 @@ def _tripod(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -
     return parts + pieces("hub", hub, metal)
 
 
-def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> Pieces:
+def _pole(rng: np.random.Generator, w: float, d: float, h: float, tall: float, scheme: Scheme) -> Pieces:
     """Build a round foot with a pole under a shade that is `tall`, turned where the style likes ornament."""
-    w, _, h = size
     r, metal = w / 2, scheme.handle
     if scheme.manner.ornament > 0.5:
         steps = [(0.6 * r, 0.0), (0.6 * r, 0.03), (0.05, 0.05), (0.02, 0.12), (0.032, 0.3), (0.016, 0.36 * h), (0.03, 0.42 * h)]
@@ -54,9 +173,8 @@ def _pole(rng: np.random.Generator, size: Size, tall: float, scheme: Scheme) -> 
     return pieces("pole", revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20), metal)
 
 
-def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _stem_of_globes(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build three lit globes on arms around a stem."""
-    w, d, h = size
     r, metal = w / 2, scheme.handle
     parts = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
     q = 0.36 * r
@@ -69,9 +187,8 @@ def _stem_of_globes(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pie
     return parts
 
 
-def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a small shade on an arm, a lit bar, a globe on a plate, or candles on swung arms; the back is at the wall."""
-    w, d, h = size
     metal = scheme.handle
     back = d / 2
     if form == "bar":
@@ -81,7 +198,7 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
         light = rod((0, y, 0.03 * h), (0, y, 0.97 * h), 0.85 * r, n=14)
         caps = [rod((0, y, z), (0, y, z + 0.03 * h), r, n=14) for z in (0.0, 0.97 * h)]
         arm = box((-0.012, 0.012), (y + 0.85 * r, back - 0.018), (0.48 * h, 0.52 * h), 0.002)
-        return Shape(pieces("plate", plate, metal) + pieces("caps", [*caps, arm], metal) + pieces("tube", light, GLOW))
+        return Shape(pieces("plate", plate, metal) + pieces("caps", [*caps, arm], metal) + pieces("tube", light, "glow"))
     if form == "globe":
         r = min(w / 2, 0.42 * d)
         y = -d / 2 + r
@@ -100,18 +217,17 @@ def wall_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -
     return Shape(parts)
 
 
-def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a shade on a foot of pottery, turned wood or metal, a globe, a mushroom, or a desk lamp with a jointed arm."""
-    w, d, h = size
     metal = scheme.handle
     r = w / 2
     if form == "desk":
-        return turned_along(table_lamp(rng, form, (d, w, h), scheme)) if d > w else Shape(_desk_lamp(rng, size, scheme))
+        return turned_along(table_lamp(rng, form, d, w, h, scheme)) if d > w else Shape(_desk_lamp(rng, w, d, h, scheme))
     if form == "mushroom":
         foot = revolve([(0.5 * r, 0.0), (0.42 * r, 0.1 * h), (0.34 * r, 0.45 * h), (0.4 * r, 0.6 * h)], 20)
         bend = curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2)
         cap = revolve(bend.tolist(), 28)
-        return Shape(pieces("stem", foot, scheme.front) + pieces("cap", cap, GLOW if rng.random() < 0.5 else scheme.front))
+        return Shape(pieces("stem", foot, scheme.front) + pieces("cap", cap, "glow" if rng.random() < 0.5 else scheme.front))
     if form == "globe":
         foot = revolve([(0.6 * r, 0.0), (0.6 * r, 0.02), (0.3 * r, 0.03), (0.2 * r, h - 1.95 * r)], 20)
         base = pieces("foot", foot, metal if rng.random() < 0.6 else scheme.stone)
@@ -127,9 +243,8 @@ def table_lamp(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) 
     return Shape(pieces("foot", revolve(profile, 20), finish) + shade(rng, scheme, kind, r, (stem, h)))
 
 
-def _desk_lamp(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a round foot, an arm with an elbow and a cone at its end, along x."""
-    w, d, h = size
     q = min(0.5 * d, 0.34 * w)
     x0, tip = -w / 2 + q, w / 2 - 0.28 * d
     foot = revolve([(q, 0.0), (q, 0.014), (0.2 * q, 0.022)], 20, (x0, 0.0))

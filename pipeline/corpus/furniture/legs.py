@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import curve, tube, turns
-from pipeline.corpus.furniture.finishes import Finish, Scheme, one_of
+from pipeline.corpus.furniture.finishes import PROFILES, Finish, Scheme, one_of
 from pipeline.corpus.furniture.intervals import Spot, around, between, inset, polar, split
 from pipeline.corpus.furniture.solids import Solid, beam, box, revolve, rod, stack
 
@@ -16,17 +16,6 @@ WIDE = frozenset({"sled", "cross", "plank"})  # forms that join the two legs of 
 
 # Round legs that splay: by which share of their height, by how much at most [m], and their radii at foot and top in thicknesses.
 RAKES = {"splayed": (0.12, 0.06, 0.3, 0.52), "dowel": (0.03, 0.02, 0.42, 0.42), "ming": (0.03, 0.02, 0.42, 0.42)}
-# A turned leg and a cabriole one, from the floor up: (radius, height), (height, how far out, radius), in thicknesses and heights.
-TURNED = ((0.34, 0.0), (0.5, 0.05), (0.3, 0.12), (0.44, 0.42), (0.56, 0.68), (0.34, 0.76), (0.54, 0.8), (0.54, 0.84))
-CABRIOLE = (
-    (0.0, 0.62, 0.42),
-    (0.05, 0.55, 0.4),
-    (0.16, 0.12, 0.24),
-    (0.4, 0.02, 0.28),
-    (0.66, 0.36, 0.42),
-    (0.84, 0.5, 0.52),
-    (1.0, 0.12, 0.56),
-)
 
 
 def leg_finish(scheme: Scheme, kind: str) -> Finish:
@@ -85,7 +74,7 @@ def leg(kind: str, at: Spot, out: Spot, height: float, thick: float) -> list[Sol
 
 def _turned_leg(x: float, y: float, h: float, t: float) -> list[Solid]:
     block = box(around(0.52 * t, x), around(0.52 * t, y), (0.84 * h, h), 0.002)
-    return [*revolve([(r * t, z * h) for r, z in TURNED], 12, (x, y)), block]
+    return [*revolve([(r * t, z * h) for r, z in PROFILES["turned_leg"]], 12, (x, y)), block]
 
 
 def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
@@ -98,8 +87,8 @@ def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) ->
 
 def _cabriole(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
     reach = min(t, 0.35 * h) * 1.25 / math.sqrt(2)
-    points = [(x + sx * out * reach, y + sy * out * reach, share * h) for share, out, _ in CABRIOLE]
-    return tube(points, [r * t for _, _, r in CABRIOLE], 8)
+    points = [(x + sx * out * reach, y + sy * out * reach, share * h) for share, out, _ in PROFILES["cabriole_leg"]]
+    return tube(points, [r * t for _, _, r in PROFILES["cabriole_leg"]], 8)
 
 
 def _hairpin(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:

@@ -7,39 +7,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
-from pipeline.corpus.furniture.finishes import CERAMIC, LEAF, SOIL, Finish, Scheme, one_of, shade
+from pipeline.corpus.furniture.finishes import FINISHES, PROFILES, Finish, Material, Scheme, draw_material, shade
 from pipeline.corpus.furniture.intervals import Spot, polar
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
 
 GOLDEN = math.pi * (3 - math.sqrt(5))
-BARK = Finish("bark", (0.16, 0.10, 0.055), 0.9, pattern="speckle", density=500)
 
 
-POTS = (  # profiles of (radius, height), in shares
-    ((0.72, 0.0), (1.0, 1.0)),
-    ((1.0, 0.0), (1.0, 1.0)),
-    ((0.6, 0.0), (0.94, 0.35), (1.0, 0.6), (0.86, 1.0)),
-    ((0.94, 0.0), (0.94, 1.0)),
-)
 Points = NDArray[np.float64]
 
 
-def plant(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def plant(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a bush, a palm, a monstera, a fiddle fig, or an olive tree in a pot."""
-    w, d, h = size
     pot_r = min(0.3 * min(w, d), 0.2)
     pot, crown = _pot(rng, pot_r, min(0.34 * h, 0.36, 1.9 * pot_r), scheme)
     grow = {"bush": _bush, "palm": _palm, "monstera": _monstera, "fig": _fig, "olive": _olive}[form]
-    green = Finish("leaf", shade(rng, LEAF.color, 0.28), 0.55, pattern="leaf", density=300)
+    green = Finish("leaf", shade(rng, FINISHES["leaf"].color, 0.28), 0.55, pattern="leaf", density=300)
     return Shape(pot + grow(rng, Growth((w / 2, d / 2), crown, h, pot_r, green)))
 
 
 def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[Pieces, float]:
     """Return a pot with soil, and the height of the soil: tapered, cylindrical, bellied, a box, or a planter on legs."""
-    clay = Finish("clay", (0.42, 0.17, 0.09), 0.8, density=1800)
-    concrete = Finish("concrete_pot", (0.34, 0.34, 0.33), 0.8, pattern="concrete", density=2000)
-    finish = one_of(rng, (CERAMIC, clay, scheme.front, concrete))
+    finish = draw_material(rng, "ceramic", "clay", scheme.front, "concrete_pot")
     kind = int(rng.integers(4))
     lift = 0.0
     parts: Pieces = ()
@@ -50,20 +40,20 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
         parts += pieces("stand", legs, scheme.timber)
         parts += pieces("stand_bars", rod((-bar[0], -bar[1], lift - 0.012), (*bar, lift - 0.012), 0.009, n=6), scheme.timber)
         r = r * 0.9
-    profile = [(a * r, lift + b * (h - lift)) for a, b in POTS[kind]]
+    profile = [(a * r, lift + b * (h - lift)) for a, b in PROFILES[f"pot_{kind}"]]
     walls = [(profile[0][0], lift + 0.014), *profile[1:]]
     for (r0, z0), (r1, z1) in itertools.pairwise(walls):
         parts += pieces("pot", ring((r0, r1), (r0 - 0.013, r1 - 0.013), (z0, z1), 22), finish)
     parts += pieces("pot_floor", slab(circle(profile[0][0], 22), (lift, lift + 0.014)), finish)
     crown = lift + 0.9 * (h - lift)
     inner = float(np.interp(crown, [z for _, z in profile], [a for a, _ in profile])) - 0.0135
-    return parts + pieces("soil", slab(circle(inner, 18), (crown - 0.02, crown)), SOIL), crown
+    return parts + pieces("soil", slab(circle(inner, 18), (crown - 0.02, crown)), "soil"), crown
 
 
 class Growth:
     """What grows from a pot: `half` (x, y) its room, from the soil at `crown` up to `h` [m], over a pot of radius `pot`."""
 
-    def __init__(self, half: Spot, crown: float, h: float, pot: float, green: Finish) -> None:
+    def __init__(self, half: Spot, crown: float, h: float, pot: float, green: Material) -> None:
         self.half, self.small = np.array(half), min(half)
         self.crown, self.h, self.pot, self.green = crown, h, pot, green
         self.stems: list[Solid] = []
@@ -83,7 +73,7 @@ class Growth:
         self.roots.append(root)
         self.tips.append(tip)
 
-    def parts(self, stems: str, bark: Finish, width: float, leaf: Finish | None = None, *, belly: float = 0.5, n: int = 8) -> Pieces:
+    def parts(self, stems: str, bark: Material, width: float, leaf: Material | None = None, *, belly: float = 0.5, n: int = 8) -> Pieces:
         """Return the stems, of `bark`, and the leaves, `width` [m] wide."""
         leaves = blades(np.array(self.roots), np.array(self.tips), width, belly=belly, n=n)
         return pieces(stems, self.stems, bark) + pieces("leaves", leaves, leaf or self.green)
@@ -101,7 +91,7 @@ def _bush(rng: np.random.Generator, g: Growth) -> Pieces:
         for j, q in enumerate(np.linspace(0.3, 1.0, 7)):
             p = np.array([np.interp(q * (len(path) - 1), np.arange(len(path)), path[:, c]) for c in range(3)])
             g.leaf(p, p + np.array(polar(reach, a + j * 2.2, 0.35 * reach * float(rng.uniform(0.2, 1.2)))))
-    return g.parts("stems", BARK, 0.10 * g.small + 0.026)
+    return g.parts("stems", "bark", 0.10 * g.small + 0.026)
 
 
 def _palm(rng: np.random.Generator, g: Growth) -> Pieces:
@@ -161,7 +151,7 @@ def _fig(rng: np.random.Generator, g: Growth) -> Pieces:
         reach = (0.95 - 0.55 * share) if share > 0.15 else 0.75
         p = np.array([*(np.interp(z, trunk[:, 2], trunk[:, j]) for j in range(2)), z])
         g.leaf(p + polar(0.012, a, 0.0), g.out(a, reach, min(g.h, z + 0.16 + 0.12 * share * (g.h - g.crown))))
-    return g.parts("trunk", BARK, 0.36 * g.small + 0.03, belly=0.62)
+    return g.parts("trunk", "bark", 0.36 * g.small + 0.03, belly=0.62)
 
 
 def _olive(rng: np.random.Generator, g: Growth) -> Pieces:
@@ -180,4 +170,4 @@ def _olive(rng: np.random.Generator, g: Growth) -> Pieces:
             for m in range(2):
                 g.leaf(p, p + reach * np.array(polar(1.0, a + j * 1.9 + m * math.pi, float(rng.uniform(-0.2, 0.5)))))
     grey = Finish("olive_leaf", shade(rng, (0.16, 0.22, 0.12), 0.15), 0.6, pattern="leaf", density=300)
-    return g.parts("trunk", BARK, 0.02 + 0.03 * g.small, grey, n=4)
+    return g.parts("trunk", "bark", 0.02 + 0.03 * g.small, grey, n=4)

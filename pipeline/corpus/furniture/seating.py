@@ -1,30 +1,132 @@
-"""Chairs at tables, and Chinese armchairs. The front is -y. Lengths in metres."""
+"""Chairs with their backs, stools, benches, ottomans and poufs. The front is -y. Lengths in metres."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.backs import Frame, back
-from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube
-from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Scheme, cane, one_of
-from pipeline.corpus.furniture.intervals import around, between, corners
-from pipeline.corpus.furniture.legs import draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Pieces, Shape, Size, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, board, box, cushion, revolve, rod, slab
-from pipeline.corpus.furniture.upholstery import piping, seat_cushion
+from pipeline.corpus.furniture.bent import arc, curve, lean, prism, sheet, tube, turns, wall
+from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Material, Scheme, cane, one_of
+from pipeline.corpus.furniture.intervals import around, between, corners, polar, split
+from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
+from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.solids import Solid, beam, board, box, circle, cushion, revolve, rod, slab, standing
+from pipeline.corpus.furniture.textiles import piping, seat_cushion, tufted_panel, upright_pad
 
 TUBE = 0.011  # radius of bent steel
 
 
-def dining_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Where a back goes: half width `x`, its plane `y`, from `low` (the seat) up to `high`, leaning back by `slope` per height."""
+
+    x: float
+    y: float
+    low: float
+    high: float
+    slope: float
+    thick: float
+    wood: Material
+
+    def bar(self, a: float, b: float, inset: float, deep: float = 0.8) -> Solid:
+        """Return a rail across between shares `a` and `b` of the height, `inset` from either side."""
+        rise = self.high - self.low
+        half = deep * self.thick / 2
+        return box(around(self.x - inset), around(half, self.y), (self.low + a * rise, self.low + b * rise), 0.003)
+
+
+def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
+    """Return the two posts that rise from the seat."""
+    solids = []
+    for s in (-1, 1):
+        x, y, t = s * (frame.x - frame.thick / 2), frame.y, frame.thick
+        if turned:
+            solids.append(rod((x, y, frame.low), (x, y, frame.high), 0.5 * t, 0.4 * t, 8))
+        else:
+            solids.append(beam((x, y, frame.low), (x, y, frame.high), 0.86 * t, 0.86 * t, 1.15))
+    return solids
+
+
+def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> Pieces:
+    """Return a back of one kind: slat, ladder, panel, splat, spindle, cane, cross, pad."""
+    t = frame.thick
+    soft: list[Solid] = []
+    wood: list[Solid] = []
+    other: Pieces = ()
+    if kind == "pad":
+        soft = upright_pad(
+            rng, scheme, around(frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * (frame.high - frame.low), frame.high)
+        )
+    else:
+        wood = posts(frame, turned=kind in ("spindle", "ladder") and scheme.manner.ornament > 0.3)
+        wood.append(frame.bar(0.86, 1.0, t))
+        wood += {"slat": _slats, "ladder": _ladder, "panel": _panel, "splat": _splat, "spindle": _spindles, "cross": _cross}.get(
+            kind, _rail
+        )(frame)
+        if kind == "cane":
+            rise = frame.high - frame.low
+            inset = 1.0 * t
+            sheet = box(around(frame.x - inset), around(0.004, frame.y), (frame.low + 0.3 * rise, frame.low + 0.86 * rise))
+            other = pieces("cane", lean([sheet], frame.low, frame.slope), cane(rng))
+    tilted = lean(wood, frame.low, frame.slope)
+    return pieces("back", tilted, frame.wood) + pieces("back_pad", lean(soft, frame.low, frame.slope), scheme.soft) + other
+
+
+def _rail(frame: Frame) -> list[Solid]:
+    return [frame.bar(0.2, 0.3, frame.thick)]
+
+
+def _slats(frame: Frame) -> list[Solid]:
+    rise, t = frame.high - frame.low, frame.thick
+    count = max(3, round(2 * frame.x / 0.1))
+    xs = np.linspace(-frame.x + 2.2 * t, frame.x - 2.2 * t, count)
+    low, high = frame.low + 0.24 * rise, frame.low + 0.86 * rise
+    return [frame.bar(0.16, 0.24, t), *(box(around(0.016, x), around(0.006, frame.y), (low, high), 0.002) for x in xs)]
+
+
+def _ladder(frame: Frame) -> list[Solid]:
+    return [frame.bar(a, a + 0.11, frame.thick, 0.55) for a in (0.14, 0.38, 0.62)]
+
+
+def _panel(frame: Frame) -> list[Solid]:
+    return [frame.bar(0.28, 0.8, frame.thick, 0.5)]
+
+
+def _splat(frame: Frame) -> list[Solid]:
+    """Build a board down the middle, waisted: two trapezoids with a round between them."""
+    rise = frame.high - frame.low
+    low, high, middle = frame.low + 0.04 * rise, frame.low + 0.86 * rise, frame.low + 0.45 * rise
+    wide = 0.42 * frame.x
+    span = around(0.006, frame.y)
+    under = np.array([(-0.75 * wide, low), (0.75 * wide, low), (0.42 * wide, middle), (-0.42 * wide, middle)])
+    over = np.array([(-0.42 * wide, middle), (0.42 * wide, middle), (wide, high), (-wide, high)])
+    return [prism(under, "y", span), prism(over, "y", span)]
+
+
+def _spindles(frame: Frame) -> list[Solid]:
+    rise, t = frame.high - frame.low, frame.thick
+    count = max(5, round(2 * frame.x / 0.075))
+    xs = np.linspace(-frame.x + 1.9 * t, frame.x - 1.9 * t, count)
+    return [rod((x, frame.y, frame.low), (x, frame.y, frame.low + 0.86 * rise), 0.0075, 0.006, 6) for x in xs]
+
+
+def _cross(frame: Frame) -> list[Solid]:
+    """Two bars that cross behind each other, as on a bistro chair."""
+    rise, t = frame.high - frame.low, frame.thick
+    x, z = frame.x - 1.1 * t, (frame.low + 0.12 * rise, frame.low + 0.86 * rise)
+    bars = [frame.bar(0.06, 0.12, t, 0.5)]
+    for s, dy in ((-1, -0.009), (1, 0.009)):
+        bars.append(rod((-s * x, frame.y + dy, z[0]), (s * x, frame.y + dy, z[1]), 0.009, n=8))
+    return bars
+
+
+def dining_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build a chair: framed (wood, upholstered, spindle, cafe), a shell, a wishbone, or a cantilever."""
     build = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever}.get(form)
-    return Shape(build(rng, size, scheme) if build else _frame_chair(rng, form, size, scheme))
+    return Shape(build(rng, w, d, h, scheme) if build else _frame_chair(rng, form, w, d, h, scheme))
 
 
-def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Pieces:
-    w, d, h = size
+def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     seat = min(0.47, 0.56 * h)
     x, y = w / 2, d / 2
     thick = 0.034 * scheme.manner.slim
@@ -64,9 +166,8 @@ def _frame_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme
     return parts
 
 
-def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _shell_chair(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a bent shell of plywood, plastic or cloth on four legs, a wire base, or a swivel foot."""
-    w, d, h = size
     seat, x, y = min(0.46, 0.55 * h), w / 2, d / 2
     soft = rng.random() < 0.45
     finish = scheme.soft if soft else scheme.front
@@ -92,9 +193,8 @@ def _shell_chair(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces
     return parts + pieces("legs", feet, finish) + pieces("plate", plate, scheme.handle)
 
 
-def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _wishbone(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Build a round crest that becomes the arms, on posts, with a forked splat and a woven seat."""
-    w, d, h = size
     seat, x, y, wood = min(0.45, 0.55 * h), w / 2, d / 2, scheme.timber
     r = 0.016
     bow = arc((0.0, 0.0), x - 0.018, 0.0, math.pi, 10, (y - 0.02) / (x - 0.018))
@@ -110,15 +210,13 @@ def _wishbone(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     fork += [rod((s * 0.006, 0.72 * y, cleft), (s * 0.16 * x, 0.9 * y, top), 0.012, 0.01, 8) for s in (-1, 1)]
     rails = [rod((-x + 0.045, -y + 0.05, seat - 0.025), (x - 0.045, -y + 0.05, seat - 0.025), 0.014, n=8)]
     rails += [rod((s * (x - 0.028), -y + 0.06, seat - 0.05), (s * 0.70 * x, 0.5 * y, seat - 0.05), 0.012, n=8) for s in (-1, 1)]
-    weave = Finish("cord", (0.56, 0.46, 0.32), 0.95, pattern="knit", density=300)
     quad = np.array([(-x + 0.03, -y + 0.036), (x - 0.03, -y + 0.036), (0.66 * x, 0.5 * y), (-0.66 * x, 0.5 * y)])
     parts = pieces("frame", crest + front + rear + rails, wood) + pieces("fork", fork, wood)
-    return parts + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), weave)
+    return parts + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), "cord")
 
 
-def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
+def _cantilever(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
     """Bent steel from the floor over the front up to the seat and the back, with cane, leather or cloth between."""
-    w, d, h = size
     seat, x, y = min(0.46, 0.56 * h), w / 2 - TUBE, d / 2
     side = [(y - 0.03, TUBE), (-y + 0.06, TUBE), (-y + TUBE, 0.06), (-y + TUBE, seat - 0.08), (-y + 0.06, seat - 0.02)]
     side += [(0.55 * y, seat - 0.035), (0.66 * y, seat + 0.02), (y - 0.012, h - 0.012)]
@@ -133,9 +231,8 @@ def _cantilever(rng: np.random.Generator, size: Size, scheme: Scheme) -> Pieces:
     return parts + pieces("back", lean([pad], seat + 0.02, slope), panel)
 
 
-def chinese_chair(rng: np.random.Generator, form: str, size: Size, scheme: Scheme) -> Shape:
+def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
     """Build an official's hat chair with a yoke, or a rose chair with a low square back."""
-    w, d, h = size
     seat = min(0.5, 0.55 * h)
     x, y = 0.5 * w - 0.03, 0.5 * d - 0.03
     wood = scheme.timber
@@ -169,3 +266,94 @@ def _yoke(form: str, x: float, y: float, seat: float, arm: float, h: float) -> t
     upper += [rod((-x, y, h - r), (x, y, h - r), r, n=8)]
     upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
     return upper, top
+
+
+def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+    """Build a round upholstered stool, one with a low curved back, or a drum with a skirt."""
+    seat = h if h < 0.56 else min(0.48, 0.6 * h)
+    low, squash = seat - 0.11, d / w
+    if form == "drum":
+        parts = pieces("body", revolve([(0.44 * w, 0.0), (0.46 * w, 0.03), (0.46 * w, low)], 28, squash=squash), scheme.second)
+    else:
+        kind = draw_kind(rng, scheme, "plank cross sled horse block bun pipe")
+        half = 0.31 * w
+        parts = pieces("legs", legs(kind, (half, half * d / w), low - 0.012, 0.034), leg_finish(scheme, kind))
+        parts += pieces("ring", slab(circle(0.45 * w, 24, squash=squash), (low - 0.012, low), 0.003), leg_finish(scheme, kind))
+    backed = h > seat + 0.1
+    profile = [(0.46 * w, low), (0.495 * w, low + 0.015), (0.5 * w, low + 0.04), (0.5 * w, seat - 0.05)]
+    profile += [(0.47 * w, seat - 0.018), (0.36 * w, seat - 0.003), (0.2 * w, seat)]
+    if backed:
+        profile = [(0.85 * r, z) for r, z in profile]
+    parts += pieces("seat", revolve(profile, 28, squash=squash), scheme.soft)
+    if backed:
+        bow = arc((0.0, 0.0), 0.467 * w, 0.06 * math.pi, 0.94 * math.pi, 10, squash)
+        rise = 0.55 + 0.45 * np.sin(np.linspace(0.1, math.pi - 0.1, 11))
+        parts += pieces("back", wall(bow, 0.06, low, seat + (h - seat) * rise / rise.max(), 0.025), scheme.soft)
+    return Shape(parts)
+
+
+def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+    """Build a high seat on four legs or on a column; a foot rest goes around it."""
+    seat = h if h < 0.85 else 0.72 * h
+    x, y = w / 2, d / 2
+    metal, top = scheme.handle, seat - 0.075
+    if form == "pedestal":
+        r, z = min(w, d), 0.32 * seat
+        column = [(0.46 * r, 0.0), (0.46 * r, 0.012), (0.05, 0.035), (0.028, 0.05), (0.026, top - 0.012), (0.11, top - 0.01), (0.11, top)]
+        hoop = arc((0.0, 0.0), 0.3 * r, 0, 2 * math.pi, 14)[:-1]
+        rest = tube(np.column_stack([hoop, np.full(14, z)]), 0.009, 6, closed=True)
+        rest += [rod(polar(0.028, a, z), polar(0.3 * r - 0.009, a, z), 0.007, n=6) for a in turns(3, math.pi / 2)]
+        parts = pieces("column", revolve(column, 24), metal) + pieces("foot_rest", rest, metal)
+    else:
+        kind = draw_kind(rng, scheme, "plank cross sled block bun hairpin blade cabriole")
+        finish = leg_finish(scheme, kind)
+        half = inside(kind, (x, y), top - 0.02, 0.036)
+        frame = board(around(0.46 * w), around(0.44 * d), (top - 0.02, top), 0.03, 2, 0.003)
+        parts = pieces("legs", legs(kind, half, top - 0.02, 0.036), finish) + pieces("frame", frame, finish)
+        z, out = 0.3 * seat, min(0.12 * top, 0.06) * 0.7 if kind == "splayed" else 0.0
+        a, b = half[0] + out, half[1] + out
+        rest = [rod((-a + 0.012, t * b, z), (a - 0.012, t * b, z), 0.009, n=8) for t in (-1, 1)]
+        rest += [rod((s * a, -b + 0.012, z + 0.04), (s * a, b - 0.012, z + 0.04), 0.009, n=8) for s in (-1, 1)]
+        parts += pieces("foot_rest", rest, metal if kind in METAL else finish)
+    parts += seat_cushion((-x, x), (-y, 0.84 * y), (top, seat), 0.03, scheme.soft, piping(rng, scheme))
+    if h > seat + 0.1:
+        parts += pieces("back", upright_pad(rng, scheme, around(0.45 * w), (y - 0.055, y), (seat + 0.05, h)), scheme.soft)
+        struts = [box(around(0.012, s * 0.3 * w), (0.85 * y, 0.85 * y + 0.012), (top, seat + 0.05), 0.002) for s in (-1, 1)]
+        parts += pieces("struts", struts, metal)
+    return Shape(parts)
+
+
+def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+    """Build a bed-end bench, an ottoman, a stool on legs, a round pouf, or a ceramic drum."""
+    x, y = w / 2, d / 2
+    if form == "drum":
+        profile = [(0.62, 0.0), (0.7, 0.06), (0.92, 0.26), (1.0, 0.5), (0.92, 0.74), (0.7, 0.94), (0.62, 1.0)]
+        glazed = Finish("glaze", scheme.soft.color, 0.2, density=900)
+        return Shape(pieces("drum", revolve([(a * x, b * h) for a, b in profile], 24, squash=d / w), glazed))
+    if form == "pouf":
+        profile = [(0.6, 0.0), (0.86, 0.06), (0.97, 0.22), (1.0, 0.5), (0.97, 0.78), (0.86, 0.94), (0.5, 1.0)]
+        wool = Finish("knit", scheme.soft.color, 0.95, pattern="knit", density=80)
+        return Shape(pieces("pouf", revolve([(a * x, b * h) for a, b in profile], 28, squash=d / w), wool))
+    cord = piping(rng, scheme)
+    if form == "ottoman":
+        low = 0.66 * h
+        feet = legs("bun" if scheme.manner.ornament > 0.5 else "tapered", (x - 0.05, y - 0.05), 0.06, 0.05)
+        body = cushion(around(x - 0.004), around(y - 0.004), (0.06, low), 0.02, 2)
+        parts = pieces("feet", feet, scheme.timber) + pieces("body", body, scheme.soft)
+        if rng.random() < scheme.manner.tufts and w > 0.4:
+            pad = tufted_panel((-x, x), (-0.34 * h, 0.0), (-y, y), max(2, round(w / 0.22)), max(2, round(d / 0.22)))
+            laid = standing(pad, (0, 0, 0))
+            drop = low - min(float(s.vertices[:, 2].min()) for s in laid)
+            return Shape(parts + pieces("seat", [s.moved((0, 0, drop)) for s in laid], scheme.soft))
+        return Shape(parts + seat_cushion((-x, x), (-y, y), (low, h), 0.05, scheme.soft, cord))
+    kind = draw_kind(rng, scheme, "bun blade")
+    half = inside(kind, (x, y), h - 0.1, 0.04)
+    thick = min(0.12, 0.3 * h) if form == "bench" else 0.07
+    finish, top = leg_finish(scheme, kind), h - thick
+    parts = pieces("legs", legs(kind, half, top - 0.035, 0.04), finish)
+    parts += pieces("frame", board(around(x - 0.008), around(y - 0.008), (top - 0.035, top), 0.02, 2, 0.004), finish)
+    if form == "legs" and rng.random() < 0.35:
+        return Shape(parts + pieces("seat", board((-x, x), (-y, y), (top, h), 0.03, 3, scheme.manner.edge), scheme.body))
+    for span in split((-x, x), max(1, round(w / 0.55)) if form == "bench" else 1, 0.001):
+        parts += seat_cushion(span, (-y, y), (top, h), 0.04, scheme.soft, cord)
+    return Shape(parts)

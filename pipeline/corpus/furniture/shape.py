@@ -1,16 +1,15 @@
 """Shapes: pieces of convex solids on a base and on movers, before they become an asset or files."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.finishes import Finish
+from pipeline.corpus.furniture.finishes import FINISHES, Finish, Material
 from pipeline.corpus.furniture.solids import Solid, Vector, box, hull
 
-Size = Sequence[float]  # (w, d, h) [m]
 Axis3 = tuple[float, float, float]
 FRONT: Axis3 = (0.0, -1.0, 0.0)
 UP: Axis3 = (0.0, 0.0, 1.0)
@@ -40,14 +39,14 @@ Pieces = tuple[Piece, ...]
 class Mover:
     """A body that moves against its parent (a mover's name, or "base").
 
-    `axis` (unit) and `origin` [m] in the object frame at rest; motion goes from `lower` <= 0 to `upper` >= 0 [rad or m] and
-    positive opens. `outward` is the direction its face looks at rest (GAPartNet's z axis).
+    `axis` (unit) and `origin` [m] in the object frame at rest; motion goes from 0 to `upper` [rad or m] and
+    opens. `outward` is the direction its face looks at rest (GAPartNet's z axis).
     `after` names the movers that must be open before this one can move: a rack waits for the door before it.
     """
 
     name: str
     pieces: Pieces
-    type: Literal["revolute", "prismatic", "continuous"]
+    type: Literal["revolute", "prismatic"]
     axis: Axis3
     origin: Axis3
     upper: float
@@ -55,7 +54,6 @@ class Mover:
     semantic: str
     outward: Axis3 = FRONT
     parent: str = "base"
-    lower: float = 0.0
     after: tuple[str, ...] = ()
 
 
@@ -78,11 +76,10 @@ class Shape:
         return np.stack([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
 
 
-def pieces(name: str, solids: Solid | Iterable[Solid], finish: Finish, part: str = "", group: str = "") -> Pieces:
+def pieces(name: str, solids: Solid | Iterable[Solid], material: Material, part: str = "", group: str = "") -> Pieces:
     """Return the pieces of one component."""
-    if isinstance(solids, Solid):
-        return (Piece(name, solids, finish, part, group),)
-    return tuple(Piece(name, solid, finish, part, group) for solid in solids)
+    finish = FINISHES[material] if isinstance(material, str) else material
+    return tuple(Piece(name, solid, finish, part, group) for solid in ((solids,) if isinstance(solids, Solid) else solids))
 
 
 def group_pieces(parts: Iterable[Piece], group: str) -> Pieces:
@@ -90,9 +87,9 @@ def group_pieces(parts: Iterable[Piece], group: str) -> Pieces:
     return tuple(replace(piece, group=group) for piece in parts)
 
 
-def staves(name: str, solids: Sequence[Solid], finish: Finish) -> Pieces:
+def staves(name: str, solids: Iterable[Solid], material: Material) -> Pieces:
     """Return the staves of a round wall, three neighbours of which collide as one: finer to see than to touch."""
-    return tuple(Piece(name, solid, finish, group=f"{name}_{k // 3}") for k, solid in enumerate(solids))
+    return tuple(replace(piece, group=f"{name}_{k // 3}") for k, piece in enumerate(pieces(name, solids, material)))
 
 
 def colliders(parts: Iterable[Piece]) -> list[Solid]:
@@ -137,9 +134,7 @@ def fit_to_size(shape: Shape, size: Vector) -> Shape:
     for mover in shape.movers:
         x, y, z = ((np.asarray(mover.origin) + offset) * factors).tolist()
         stretch = float(np.abs(np.asarray(mover.axis)) @ factors) if mover.type == "prismatic" else 1.0
-        placed.append(
-            replace(mover, pieces=place(mover.pieces), origin=(x, y, z), upper=mover.upper * stretch, lower=mover.lower * stretch)
-        )
+        placed.append(replace(mover, pieces=place(mover.pieces), origin=(x, y, z), upper=mover.upper * stretch))
     return Shape(place(shape.base), tuple(placed))
 
 

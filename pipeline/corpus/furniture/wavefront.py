@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.shape import Piece, Pieces
 from pipeline.corpus.furniture.solids import Face, Solid, Topology, merge_solids, normals, topology
-from pipeline.corpus.furniture.texture import Atlas, Corners, srgb
+from pipeline.corpus.furniture.texture import Atlas, srgb
 
 
 def mesh_frame(points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -20,11 +20,20 @@ def mesh_frame(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """The pieces of one OBJ group, all of one material `material`."""
+    """The pieces of one OBJ group, all of one finish, which the material library calls `material`."""
 
     name: str
     material: str
+    finish: Finish
     pieces: Pieces
+
+
+def group_by_finish(pieces: Iterable[Piece], name: str) -> list[Group]:
+    """Return pieces in groups, one for each finish; `name` of a group, with its number where there is a field for it."""
+    members: dict[Finish, list[Piece]] = {}
+    for piece in pieces:
+        members.setdefault(piece.finish, []).append(piece)
+    return [Group(name.format(k + 1), f"{f.name}_{k}", f, tuple(parts)) for k, (f, parts) in enumerate(members.items())]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,22 +51,17 @@ class Text:
         return (self.header + body.replace("-0.00000", "0.00000") + self.rest).encode()
 
 
-def text(groups: Sequence[Group], library: str, sheet: Atlas | None = None) -> Text:
+def text(groups: Sequence[Group], library: str, sheet: Atlas) -> Text:
     """Return groups of solids as OBJ text: triangles and quads as they are, larger faces in fans, flat normals."""
     pieces = [piece for group in groups for piece in group.pieces]
     vertices, shared = merge_solids([piece.solid for piece in pieces])
     normal = normals(vertices, shared)
     known, index = _distinct(np.round(mesh_frame(normal), 3) + 0.0)
-    columns = [shared.corners, np.repeat(index, shared.lengths)]
-    lines = ["vn %g %g %g\n" * len(known) % tuple(known.ravel().tolist())]
-    if sheet is not None:
-        corners = corners_of(pieces, vertices, shared, normal)
-        _, first, place = np.unique(3 * shared.corners + corners.axis, return_index=True, return_inverse=True)
-        uv = sheet.uv(pieces, corners)[first]
-        columns.insert(1, place)
-        lines.insert(0, "vt %.4f %.4f\n" * len(uv) % tuple(uv.ravel().tolist()))
-    table = np.stack(columns, axis=1) + 1
-    corner = "%d//%d" if sheet is None else "%d/%d/%d"
+    side = sides_of(normal, shared)
+    _, first, place = np.unique(3 * shared.corners + side, return_index=True, return_inverse=True)
+    uv = sheet.uv(pieces, vertices, shared, side)[first]
+    table = np.stack([shared.corners, place, np.repeat(index, shared.lengths)], axis=1) + 1
+    lines = ["vt %.4f %.4f\n" * len(uv) % tuple(uv.ravel().tolist()), "vn %g %g %g\n" * len(known) % tuple(known.ravel().tolist())]
     start = 0
     for group in groups:
         lines.append(f"g {group.name}\nusemtl {group.material}\n")
@@ -68,17 +72,13 @@ def text(groups: Sequence[Group], library: str, sheet: Atlas | None = None) -> T
             start += len(topology(piece.solid.faces).corners)
         for count, parts in zip((3, 4), rows, strict=True):
             wanted = table[np.concatenate(parts)]
-            lines.append(("f" + count * f" {corner}" + "\n") * (len(wanted) // count) % tuple(wanted.ravel().tolist()))
+            lines.append(("f" + count * " %d/%d/%d" + "\n") * (len(wanted) // count) % tuple(wanted.ravel().tolist()))
     return Text(f"mtllib {library}\n", mesh_frame(vertices), "".join(lines))
 
 
-def corners_of(pieces: Sequence[Piece], vertices: NDArray[np.float64], shared: Topology, normal: NDArray[np.float64]) -> Corners:
-    """Return the corners of all faces of the pieces, each seen along the axis that its face looks along most."""
-    counts = [len(piece.solid.vertices) for piece in pieces]
-    firsts = np.concatenate([[0], np.cumsum(counts[:-1])]).astype(np.int64)
-    owner = np.repeat(np.arange(len(pieces)), counts)[shared.corners]
-    axis = np.repeat(np.argmax(np.abs(normal), axis=1), shared.lengths)
-    return Corners(vertices[shared.corners], owner, axis, np.minimum.reduceat(vertices, firsts), np.maximum.reduceat(vertices, firsts))
+def sides_of(normal: NDArray[np.float64], faces: Topology) -> NDArray[np.int64]:
+    """Return the axis (C,) along which each corner's face, of that `normal` (F, 3), looks most."""
+    return np.repeat(np.argmax(np.abs(normal), axis=1), faces.lengths)
 
 
 @functools.lru_cache(maxsize=8192)
@@ -110,28 +110,24 @@ def bare(name: str, solids: Sequence[Solid]) -> Text:
     return Text("", np.concatenate([mesh_frame(s.vertices) for s in solids]), "".join(lines))
 
 
-def material_name(finish: Finish, number: int) -> str:
-    """Return a material's name in an MTL file."""
-    return f"{finish.name}_{number}"
-
-
-def mtl(finishes: Iterable[tuple[str, Finish]], texture: str | None = None) -> bytes:
+def mtl(groups: Iterable[Group], texture: str) -> bytes:
     """Return an MTL file; Kd is sRGB as in the real sets, Ns the Blinn-Phong exponent 2 / roughness^4 - 2.
 
     Metals say so by Pm, of the usual extension of MTL for physically based surfaces.
     """
     lines = []
-    for name, finish in finishes:
-        shininess = min(900.0, max(1.0, 2 / finish.roughness**4 - 2))
-        lines += [f"newmtl {name}", "illum 2", "Ka 0 0 0", "Kd {:g} {:g} {:g}".format(*srgb(finish.color))]
+    for group in groups:
+        finish = group.finish
+        gloss = 0.5 if finish.metallic else 0.1
+        lines += [f"newmtl {group.material}", "illum 2", "Ka 0 0 0", "Kd {:g} {:g} {:g}".format(*srgb(finish.color))]
         lines += [
-            f"Ks {0.5 if finish.metallic else 0.1:g} {0.5 if finish.metallic else 0.1:g} {0.5 if finish.metallic else 0.1:g}",
-            f"Ns {shininess:.1f}",
+            f"Ks {gloss:g} {gloss:g} {gloss:g}",
+            f"Ns {min(900.0, max(1.0, 2 / finish.roughness**4 - 2)):.1f}",
             f"d {finish.opacity:g}",
         ]
         if finish.metallic:
             lines.append(f"Pm {finish.metallic:g}")
-        if texture and finish.opacity == 1.0:
+        if finish.opacity == 1.0:
             lines.append(f"map_Kd {texture}")
         lines.append("")
     return "\n".join(lines).encode()

@@ -1,5 +1,6 @@
 """The moves that all room types share: a piece against a wall, beside another, a chair at a desk, a lamp overhead."""
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 
@@ -7,10 +8,9 @@ import numpy as np
 
 from pipeline.card import cards
 from pipeline.corpus.furniture.catalogue import Model
-from pipeline.corpus.houses.rates import Rates
+from pipeline.corpus.houses.rates import Deal, Rates
 from pipeline.corpus.houses.room_occupancy import Space, Spot, against, ahead, box_of, shift_spot
 from pipeline.corpus.houses.stock import Stock
-from pipeline.corpus.houses.stratified_draws import Deal
 
 LAMP_DROP = 0.02
 
@@ -74,9 +74,9 @@ class Arranger:
             width = model.size[0] * 0.95
         return False
 
-    def pair_at_wall(self, table: str, chair: str) -> bool:
-        """Put a desk or dressing table to a wall and a chair ("none": none) before it that faces it."""
-        seat = self.pick(chair)
+    def pair_at_wall(self, table: str) -> bool:
+        """Put a desk or dressing table to a wall and the seat that the room chooses ("none": none) before it, facing it."""
+        seat = self.pick(self.choose(f"{table.removesuffix('_table')}_seat"))
         front = max(free_front(table, 0.0), seat.size[1] + 0.15 if seat else 0.0)
         width = math.inf
         for _ in range(6):
@@ -129,12 +129,8 @@ class Arranger:
         model = self.pick(category, height=most)
         if model is None:
             return False
-        box = box_of(x, y, yaw, model.size[0], model.size[1])
-        z = round(self.space.height - model.size[2] - (LAMP_DROP if category == "pendant_lamp" else 0.0), 3)
-        if not self.space.fits(box, z, z + model.size[2]):
-            return False
-        self.space.add(model, Spot(x, y, yaw), z)
-        return True
+        drop = LAMP_DROP if category == "pendant_lamp" else 0.0
+        return self.space.try_add(model, Spot(x, y, yaw), round(self.space.height - model.size[2] - drop, 3))
 
     def light(self, places: Sequence[tuple[float, float]] = ()) -> None:
         """Hang the lamp that the room wants at the first of the places, or near the middle of the room, where there is room for it."""
@@ -144,6 +140,27 @@ class Arranger:
         for x, y in (*places, *self.middles()):
             if self.lamp(category, x + float(self.rng.normal(0, 0.03)), y + float(self.rng.normal(0, 0.03))):
                 return
+
+    def follow(self, recipe: Sequence[Rates], *, rich: bool) -> None:
+        """Take the steps of a recipe of rates.yaml, which says what a step may say; some are for a `rich` room alone."""
+        for step in recipe:
+            if step.get("rich") and not rich:
+                continue
+            move = functools.partial(getattr(self, step["move"]), **step.get("how", {}))
+            self.space.blind = step.get("blind", False)
+            if "each" in step:
+                for thing in self.wishes(step["each"]) or step.get("default", ()):
+                    move(thing)
+            elif "choice" in step:
+                move(self.choose(step["choice"]))
+            elif "what" not in step:
+                move()
+            else:
+                wanted = step["what"] not in self.rates or self.wants(step["what"])
+                placed = wanted and self.space.area > step.get("area", 0.0) and move(step["what"])
+                if not placed and "else" in step:
+                    move(step["else"])
+            self.space.blind = False
 
     def middles(self) -> list[tuple[float, float]]:
         """Return middles of the room: of its bounds, then of the largest rectangle-like part of an L."""

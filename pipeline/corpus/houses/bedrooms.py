@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
-from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, box_of, on_side, shift_spot
+from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, on_side, shift_spot
 
 FARTHEST_TV = 1.2
 """Most free floor between a bed's foot and the TV stand [m]."""
@@ -20,7 +20,7 @@ NIGHTSTANDS = {"none": 0, "one": 1, "two": 2}
 
 
 def furnish_bedroom(arranger: Arranger) -> None:
-    """Furnish a bedroom of grown-ups."""
+    """Furnish a bedroom, or a child's room."""
     category = arranger.choose("bed")
     bed = place_bed(arranger, category)
     if bed is None and category == "double_bed":
@@ -39,27 +39,13 @@ def furnish_bedroom(arranger: Arranger) -> None:
     arranger.light([(bed[1].x, bed[1].y)] if bed is not None and arranger.wants("lamp_over_bed") else [])
 
 
-def furnish_kids_room(arranger: Arranger) -> None:
-    """Furnish a child's room."""
-    bed = place_bed(arranger, arranger.choose("bed"))
-    if bed is not None:
-        nightstands(arranger, bed, NIGHTSTANDS[arranger.choose("nightstands")])
-    at_walls(arranger, arranger.wishes("pieces"))
-    extras(arranger)
-    if arranger.wants("wall_lamp"):
-        arranger.on_wall("wall_lamp", 1.5)
-    arranger.light()
-
-
 def at_walls(arranger: Arranger, pieces: list[str]) -> None:
     """Put desks with their chairs and other large pieces to the walls, in either order."""
     if arranger.chance(0.5):
         pieces.reverse()
     for piece in pieces:
-        if piece == "desk":
-            arranger.pair_at_wall(piece, arranger.choose("desk_seat"))
-        elif piece == "dressing_table":
-            arranger.pair_at_wall(piece, arranger.choose("dressing_seat"))
+        if piece in {"desk", "dressing_table"}:
+            arranger.pair_at_wall(piece)
         else:
             arranger.at_wall(piece, corner=0.8, tries=6)
 
@@ -93,9 +79,9 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
             weights = np.array([w for w, _ in candidates])
             spot = candidates[int(rng.choice(len(candidates), p=weights / weights.sum()))][1]
             w, d, _ = model.size
-            keep = [box_of(*_at(shift_spot(spot, 0.0, d / 2 + FOOT / 2)), w * 0.8, FOOT)]
+            keep = [shift_spot(spot, 0.0, d / 2 + FOOT / 2).box(w * 0.8, FOOT)]
             for sign in (-1, 1):
-                lane = box_of(*_at(shift_spot(spot, sign * (w / 2 + SIDE / 2), 0.3)), SIDE, d - 0.6)
+                lane = shift_spot(spot, sign * (w / 2 + SIDE / 2), 0.3).box(SIDE, d - 0.6)
                 if space.clear(lane):
                     keep.append(lane)
             space.add(model, spot, keep=keep)
@@ -186,7 +172,3 @@ def bed_end_stool(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
         return False
     place = shift_spot(spot, float(arranger.rng.normal(0, 0.04)), model.size[1] / 2 + stool.size[1] / 2 + 0.04)
     return arranger.space.nestle(stool, place)
-
-
-def _at(spot: Spot) -> tuple[float, float, float]:
-    return spot.x, spot.y, spot.yaw

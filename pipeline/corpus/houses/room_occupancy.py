@@ -1,4 +1,4 @@
-"""A room while it is furnished: its walls, what stands in it, and what must stay free.
+"""A room while it is furnished: its walls, what stands in it, what must stay free, and where one can walk.
 
 Everything that stands is kept as an axis-aligned box in plan with a range of heights; oblique pieces by their bounds.
 """
@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
 
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.records import Item, Rect, wrap
@@ -25,6 +27,9 @@ LEAF_TOP = 2.12
 """Nothing hangs lower than this where a door leaf swings [m]."""
 LOW_PIECE = 0.65
 """What is no higher than this may stand before any window [m]."""
+CELL = 0.1
+WAY = 0.3
+"""Half the width that people leave for the ways through their rooms [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +74,13 @@ class Side:
         return self.x + s * self.tx - v * self.ty, self.y + s * self.ty + v * self.tx
 
 
+def box_of(x: float, y: float, yaw: float, width: float, depth: float) -> Rect:
+    """Return the bounds of a turned rectangle."""
+    c, s = abs(math.cos(yaw)), abs(math.sin(yaw))
+    w, d = (width * c + depth * s) / 2, (width * s + depth * c) / 2
+    return (x - w, y - d, x + w, y + d)
+
+
 @dataclass(frozen=True, slots=True)
 class Spot:
     """A place for a piece: centre [m, world], yaw, and where it came from along a side."""
@@ -79,17 +91,14 @@ class Spot:
     side: int = -1
     s: float = 0.0
 
+    def box(self, width: float, depth: float) -> Rect:
+        """Return the bounds of a piece of that width and depth there."""
+        return box_of(self.x, self.y, self.yaw, width, depth)
 
-def meets(a: Rect, b: Rect) -> bool:
-    """Whether two rectangles overlap by more than a hair."""
-    return a[0] < b[2] - EPSILON and b[0] < a[2] - EPSILON and a[1] < b[3] - EPSILON and b[1] < a[3] - EPSILON
 
-
-def box_of(x: float, y: float, yaw: float, width: float, depth: float) -> Rect:
-    """Return the bounds of a turned rectangle."""
-    c, s = abs(math.cos(yaw)), abs(math.sin(yaw))
-    w, d = (width * c + depth * s) / 2, (width * s + depth * c) / 2
-    return (x - w, y - d, x + w, y + d)
+def meets(a: Rect, b: Rect, by: float = EPSILON) -> bool:
+    """Whether two rectangles overlap by more than a hair, or than `by` [m]."""
+    return a[0] < b[2] - by and b[0] < a[2] - by and a[1] < b[3] - by and b[1] < a[3] - by
 
 
 def ahead(spot: Spot, depth: float, reach: float, width: float) -> Rect:
@@ -127,10 +136,7 @@ class Space:
 
     def _open(self, room_id: str, opening: Opening) -> None:
         """Keep free what an opening needs: the leaf's sweep, a step in front of it, the light of a window."""
-        (ax, ay), (bx, by) = opening.segment.tolist()
-        wall = min(range(len(self.sides)), key=lambda i: self.sides[i].away((ax + bx) / 2, (ay + by) / 2))
-        side = self.sides[wall]
-        low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
+        side, low, high = wall_of(self.sides, opening)
         if opening.kind == "window":
             self.panes.append((side.strip(low, high, 0.0, 0.65), max(opening.sill, LOW_PIECE)))
             return
@@ -193,8 +199,7 @@ class Space:
 
     def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = (), under: Rect | None = None) -> bool:
         """Put a piece down if it fits there and its free rectangles are free; a chair may reach under its table."""
-        w, d, h = model.size
-        if not self.fits(box_of(spot.x, spot.y, spot.yaw, w, d), z, z + h, under) or not all(self.clear(r) for r in keep):
+        if not self.fits(spot.box(*model.size[:2]), z, z + model.size[2], under) or not all(self.clear(r) for r in keep):
             return False
         self.add(model, spot, z, keep=keep)
         return True
@@ -207,8 +212,7 @@ class Space:
     def nestle(self, model: Model, spot: Spot, *, dry: bool = False) -> bool:
         """Put down a piece that may stand where others want floor for themselves, but not before a door; `dry`: only try."""
         wanted, self.keeps = self.keeps, self.keeps[: len(self.doors)]
-        w, d, h = model.size
-        fits = self.fits(box_of(spot.x, spot.y, spot.yaw, w, d), 0.0, h)
+        fits = self.fits(spot.box(*model.size[:2]), 0.0, model.size[2])
         self.keeps = wanted
         if fits and not dry:
             self.add(model, spot)
@@ -283,6 +287,13 @@ def inside_intervals(polygon: Sequence[tuple[float, float]], x: float) -> list[t
     return list(zip(crossings[::2], crossings[1::2], strict=True))
 
 
+def wall_of(sides: Sequence[Side], opening: Opening) -> tuple[Side, float, float]:
+    """Return the wall that holds an opening, and the opening's stretch along it [m]."""
+    (ax, ay), (bx, by) = opening.segment.tolist()
+    side = min(sides, key=lambda side: side.away((ax + bx) / 2, (ay + by) / 2))
+    return side, *side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
+
+
 def sides_of(room: Room) -> list[Side]:
     """Return the walls of a room as directed sides, interior on the left."""
     points = [(float(x), float(y)) for x, y in room.polygon]
@@ -291,3 +302,54 @@ def sides_of(room: Room) -> list[Side]:
         length = math.hypot(q[0] - p[0], q[1] - p[1])
         sides.append(Side(p[0], p[1], round((q[0] - p[0]) / length), round((q[1] - p[1]) / length), length))
     return sides
+
+
+def free_floor(space: Space, items: Sequence[Item]) -> NDArray[np.bool_]:
+    """Return the cells (nx, ny) of the room's bounds whose centres are on the floor and under nothing that stands there."""
+    x0, y0, x1, y1 = space.bounds
+    xs = np.arange(x0 + CELL / 2, x1, CELL)
+    ys = np.arange(y0 + CELL / 2, y1, CELL)
+    free = np.ones((len(xs), len(ys)), bool)
+    walls = [r for r, low, _ in space.solids if low < -1.0]
+    for box in [*walls, *(i.rect() for i in items if i.position[2] < LOW)]:
+        free[_cells(xs, box[0], box[2]), _cells(ys, box[1], box[3])] = False
+    return free
+
+
+def _cells(centres: NDArray[np.float64], low: float, high: float) -> slice:
+    return slice(int(np.searchsorted(centres, low)), int(np.searchsorted(centres, high)))
+
+
+def problems(space: Space) -> tuple[int, list[int]]:
+    """Return how many doors are cut off from the main floor, and which items cannot be approached within arm's length."""
+    free = free_floor(space, space.items)
+    distance = ndimage.distance_transform_edt(np.pad(free, 1), sampling=CELL)[1:-1, 1:-1]
+    labels, count = ndimage.label(distance >= WAY - CELL / 2)
+    if count == 0:
+        return len(space.doors), []
+    main = 1 + int(np.argmax(np.bincount(labels.ravel())[1:]))
+    reach = ndimage.distance_transform_edt(labels != main, sampling=CELL)
+    x0, y0 = space.bounds[:2]
+
+    def away(x: float, y: float) -> float:
+        i, j = int((x - x0) / CELL), int((y - y0) / CELL)
+        return float(reach[min(max(i, 0), reach.shape[0] - 1), min(max(j, 0), reach.shape[1] - 1)])
+
+    cut_off = sum(away(x, y) > 0.25 for x, y in space.doors)
+    far = [k for k, i in enumerate(space.items) if i.position[2] < LOW and _nearest(reach, i.rect(), (x0, y0)) > _arm(i)]
+    return cut_off, far
+
+
+def _arm(item: Item) -> float:
+    """Return how far from the walkable floor a piece may be [m]: chairs are pulled out, and stand around tables."""
+    if item.model.category == "dining_table":
+        return 1.5
+    return 0.9 if item.model.category.endswith(("chair", "stool")) else 0.55
+
+
+def _nearest(reach: NDArray[np.float64], box: Rect, origin: tuple[float, float]) -> float:
+    """Distance from the main floor to the nearest cell of a footprint [m]."""
+    i0, j0 = int((box[0] - origin[0]) / CELL), int((box[1] - origin[1]) / CELL)
+    i1, j1 = int((box[2] - origin[0]) / CELL) + 1, int((box[3] - origin[1]) / CELL) + 1
+    part = reach[max(i0, 0) : i1, max(j0, 0) : j1]
+    return float(part.min()) if part.size else 0.0

@@ -7,7 +7,7 @@ import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from pipeline.corpus.houses.room_occupancy import Side, inside_intervals, sides_of
+from pipeline.corpus.houses.room_occupancy import Side, inside_intervals, sides_of, wall_of
 from pipeline.entities.plan import Opening, Plan, Room
 
 Point = tuple[float, float, float]
@@ -146,9 +146,7 @@ def _level(side: Side, low: float, high: float, z: float) -> Quad:
 def _reveals(plan: Plan, sides: Sequence[Sequence[Side]], k: int, opening: Opening) -> list[Surface]:
     """Return the jambs, head and sill inside a wall, and around doors the frame on the room's face."""
     number = next(i for i, r in enumerate(plan.rooms) if r.room_id == opening.rooms[0])
-    (ax, ay), (bx, by) = opening.segment.tolist()
-    side = min(sides[number], key=lambda s: s.away((ax + bx) / 2, (ay + by) / 2))
-    low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
+    side, low, high = wall_of(sides[number], opening)
     thick = INNER if len(opening.rooms) == 2 else OUTER
     z0, z1 = opening.sill, opening.sill + opening.height
 

@@ -12,12 +12,11 @@ import numpy as np
 
 from pipeline.card import cards
 from pipeline.corpus.furniture.catalogue import Model
-from pipeline.corpus.furniture.level_tops import Surfaces
-from pipeline.corpus.houses import walkable_grid
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load as load_rates
 from pipeline.corpus.houses.records import Item, Rect, wrap
-from pipeline.corpus.houses.room_occupancy import Side, against, box_of, meets
+from pipeline.corpus.houses.room_occupancy import against, box_of, meets, problems, wall_of
+from pipeline.corpus.houses.stock import Surfaces
 from pipeline.entities.plan import Opening
 
 MARGIN = 0.01
@@ -156,7 +155,7 @@ def hang_curtains(arranger: Arranger, share: float, openings: Sequence[Opening])
     for opening in openings:
         if model is None or opening.kind != "window":
             continue
-        side, low, high = _wall_of(space.sides, opening)
+        side, low, high = wall_of(space.sides, opening)
         w, d, h = model.size
         width = min(high - low + 0.3, 2 * min(low + high, 2 * side.length - low - high) / 2 - 0.04)
         top = min(space.height - 0.04, opening.sill + opening.height + 0.25)
@@ -172,14 +171,6 @@ def hang_curtains(arranger: Arranger, share: float, openings: Sequence[Opening])
             space.solids.append((box, bottom, top))
 
 
-def _wall_of(sides: Sequence[Side], opening: Opening) -> tuple[Side, float, float]:
-    """Return the wall that holds an opening, and the opening's stretch along it [m]."""
-    (ax, ay), (bx, by) = opening.segment.tolist()
-
-    side = min(sides, key=lambda side: side.away((ax + bx) / 2, (ay + by) / 2))
-    return side, *side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
-
-
 def _on_floor(arranger: Arranger, category: str) -> None:
     """Stand something small at a wall, where nobody passes."""
     model = arranger.pick(category)
@@ -187,7 +178,7 @@ def _on_floor(arranger: Arranger, category: str) -> None:
         return
     space = arranger.space
     spot = against(arranger.rng, space, model, front=0.0, corner=0.8)
-    cut_off = walkable_grid.problems(space)[0]
-    if spot is not None and space.try_add(model, spot) and walkable_grid.problems(space)[0] > cut_off:
+    cut_off = problems(space)[0]
+    if spot is not None and space.try_add(model, spot) and problems(space)[0] > cut_off:
         space.items.pop()
         space.solids.pop()

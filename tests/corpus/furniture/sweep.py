@@ -63,7 +63,7 @@ def collisions(shape: Shape, steps=STEPS):
             hangs[m.parent] |= hangs[m.name]
     for mover in shape.movers:
         moving = np.isin(owner, sorted(hangs[mover.name]))
-        for q in np.linspace(mover.lower, mover.upper, steps):
+        for q in np.linspace(0.0, mover.upper, steps):
             T = poses(shape, {name: upper[name] for name in mover.after} | {mover.name: q})
             points = [s.vertices @ T[name][:3, :3].T + T[name][:3, 3] for name, s in bodies]
             low, high = np.array([p.min(0) for p in points]) + TOUCH, np.array([p.max(0) for p in points])

@@ -14,10 +14,9 @@ sys.path.insert(0, str(Path(__file__).parent))
 from sweep import collisions, transform
 
 from pipeline.corpus.furniture.assembly import shape_of
-from pipeline.corpus.furniture.catalogue import catalogue
+from pipeline.corpus.furniture.catalogue import catalogue, lines
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, door
-from pipeline.corpus.furniture.lines import lines
 from pipeline.corpus.furniture.shape import Shape, colliders, pieces
 from pipeline.corpus.furniture.solids import box
 from pipeline.entities.asset import PART_CLASSES
@@ -122,7 +121,7 @@ def test_part_classes():
 
 
 def test_every_form_is_sampled():
-    want = {(c, f.name) for c, line in lines().items() if line.moving for f in line.forms if not f.still}
+    want = {(c, name) for c, line in lines().items() if line.moving for name, form in line.forms.items() if not form.still}
     missing = want - {(m.category, m.form) for m, _ in samples()}
     assert not missing
 

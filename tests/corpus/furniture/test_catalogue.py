@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 
 from pipeline import taxonomy
-from pipeline.corpus.furniture import sizes
-from pipeline.corpus.furniture.catalogue import catalogue
-from pipeline.corpus.furniture.lines import lines
+from pipeline.card import cards
+from pipeline.corpus.furniture.catalogue import LEAST, MOST, catalogue, draw_sizes, lines
 from pipeline.seeds import generator
 
 UNSEEN = {"suitcase", "briefcase", "bucket", "safe", "drawer_organiser"}  # read where real data have them; no home holds one
@@ -16,7 +15,7 @@ UNSEEN = {"suitcase", "briefcase", "bucket", "safe", "drawer_organiser"}  # read
 def test_every_category_of_the_taxonomy_has_static_models_but_what_no_home_holds():
     made = catalogue(0)
     assert {m.category for m in made.future} == set(lines()) == set(taxonomy.load().categories) - UNSEEN
-    assert set(sizes.load()) == set(taxonomy.load().categories)
+    assert set(cards()) == set(taxonomy.load().categories)
 
 
 def test_numbers_at_size_one():
@@ -51,37 +50,36 @@ def test_names_are_those_that_the_taxonomy_reads():
 
 
 def test_sizes_lie_between_the_bounds():
-    known = sizes.load()
     for model in (*catalogue(0).future, *catalogue(1).partnet):
-        statistics = known[model.category]
-        form = next(f for f in lines()[model.category].forms if f.name == model.form)
+        size = cards()[model.category].size
+        form = lines()[model.category].forms[model.form]
         for axis in (0, 2) if form.round else (0, 1) if form.upright else (0, 1, 2):
-            assert sizes.LEAST * statistics.p05[axis] - 1e-3 <= model.size[axis] <= sizes.MOST * statistics.p95[axis] + 1e-3
+            assert LEAST * size.p05[axis] - 1e-3 <= model.size[axis] <= MOST * size.p95[axis] + 1e-3
 
 
 @pytest.mark.parametrize("category", sorted(lines()))
 @pytest.mark.parametrize("count", [8, 40])
 def test_draws_keep_mean_and_spread_whatever_their_number(category, count):
-    statistics = sizes.load()[category]
-    drawn = sizes.draw(generator(1, "test", category), statistics, count)
-    assert np.allclose(drawn.mean(axis=0), statistics.mean, rtol=0.03)
-    assert np.allclose(drawn.std(axis=0), statistics.std, rtol=0.1)
+    size = cards()[category].size
+    drawn = draw_sizes(generator(1, "test", category), size, count)
+    assert np.allclose(drawn.mean(axis=0), size.mean, rtol=0.03)
+    assert np.allclose(drawn.std(axis=0), size.std, rtol=0.1)
 
 
 @pytest.mark.parametrize("category", ["dining_table", "coffee_table", "corner_side_table", "pendant_lamp", "ceiling_lamp"])
 def test_round_ones_are_as_deep_as_wide_and_the_others_make_up_for_it(category):
-    statistics = sizes.load()[category]
+    size = cards()[category].size
     mask = [k % 3 == 0 for k in range(24)]
-    drawn = sizes.draw(generator(2, "test", category), statistics, 24, mask)
+    drawn = draw_sizes(generator(2, "test", category), size, 24, mask)
     assert (drawn[mask, 0] == drawn[mask, 1]).all()
-    assert np.allclose(drawn.mean(axis=0), statistics.mean, rtol=0.05)
-    assert np.allclose(drawn.std(axis=0), statistics.std, rtol=0.1)
+    assert np.allclose(drawn.mean(axis=0), size.mean, rtol=0.05)
+    assert np.allclose(drawn.std(axis=0), size.std, rtol=0.1)
 
 
 def test_skewed_sizes_lean_as_their_percentiles_do():
-    statistics = sizes.load()["ceiling_lamp"]  # heights: 0.08, 0.39, 1.12 m
-    heights = sizes.draw(generator(3, "test"), statistics, 200)[:, 2]
-    assert np.median(heights) < statistics.mean[2]
+    size = cards()["ceiling_lamp"].size  # heights: 0.08, 0.39, 1.12 m
+    heights = draw_sizes(generator(3, "test"), size, 200)[:, 2]
+    assert np.median(heights) < size.mean[2]
     assert heights.min() > 0
 
 
@@ -97,5 +95,5 @@ def test_same_seed_same_models_other_seed_other_models():
 def test_forms_come_equally_often():
     for category, count in Counter(m.category for m in catalogue(0).future).items():
         forms = Counter(m.form for m in catalogue(0).future if m.category == category)
-        if all(f.least_height == 0 for f in lines()[category].forms):
+        if all(f.least_height == 0 for f in lines()[category].forms.values()):
             assert max(forms.values()) - min(forms.values()) <= 1 or count < len(lines()[category].forms)

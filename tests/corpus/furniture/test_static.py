@@ -7,14 +7,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from pipeline.corpus.furniture import bent, patterns, texture
+from pipeline.corpus.furniture import bent, texture
 from pipeline.corpus.furniture.assembly import scheme_of, shape_of
-from pipeline.corpus.furniture.catalogue import catalogue
+from pipeline.corpus.furniture.catalogue import catalogue, lines, styles_of
 from pipeline.corpus.furniture.finishes import MANNERS, Finish
-from pipeline.corpus.furniture.lines import lines
 from pipeline.corpus.furniture.shape import frozen, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, merge_solids, normals, pillow, topology
-from pipeline.corpus.furniture.wavefront import corners_of
+from pipeline.corpus.furniture.wavefront import sides_of
 from pipeline.seeds import generator
 
 SMALL = {
@@ -113,10 +112,10 @@ def test_there_are_enough_models_of_every_category():
 
 
 def test_forms_and_styles_suit_each_other():
-    forms = {(c, f.name): f for c, line in lines().items() for f in line.forms}
-    assert {s for f in forms.values() for s in f.styles} == set(MANNERS)
+    assert {s for line in lines().values() for form in line.forms.values() for s in styles_of(form)} == set(MANNERS)
     for model in catalogue(1).future:
-        assert model.style in forms[model.category, model.form].styles or model.form == lines()[model.category].forms[0].name
+        forms = lines()[model.category].forms
+        assert model.style in styles_of(forms[model.form]) or model.form == next(iter(forms))
     assert {m.style for m in catalogue(0).future} == set(MANNERS)
     assert len(MANNERS) == 19
     assert sum(m.share for m in MANNERS.values()) == pytest.approx(1)
@@ -207,10 +206,10 @@ def test_texture_coordinates_keep_real_sizes_and_stay_in_their_field():
     )
     sheet = texture.atlas(parts)
     vertices, shared = merge_solids([p.solid for p in parts])
-    corners = corners_of(parts, vertices, shared, normals(vertices, shared))
-    pixels = sheet.uv(parts, corners) * [sheet.width, sheet.height]
+    pixels = sheet.uv(parts, vertices, shared, sides_of(normals(vertices, shared), shared)) * [sheet.width, sheet.height]
+    owner = np.repeat(np.arange(len(parts)), [len(p.solid.vertices) for p in parts])[shared.corners]
     for number, part in enumerate(parts):
-        field, mine = sheet.fields[sheet.finishes.index(part.finish)], pixels[corners.piece == number]
+        field, mine = sheet.fields[sheet.finishes.index(part.finish)], pixels[owner == number]
         assert (mine >= [field.x, field.y]).all()
         assert (mine <= [field.x + field.width, field.y + field.height]).all()
     around = np.linalg.norm(pixels[shared.following] - pixels, axis=1)
@@ -219,14 +218,14 @@ def test_texture_coordinates_keep_real_sizes_and_stay_in_their_field():
 
 
 def test_grain_runs_along_the_part():
-    tone = patterns.tones(generator(0, "test"), "grain", (200, 200), patterns.SCALE)
+    tone = texture.tones(generator(0, "test"), "grain", (200, 200), texture.SCALE)
     along, across = np.abs(np.diff(tone, axis=0)).mean(), np.abs(np.diff(tone, axis=1)).mean()
     assert along < 0.5 * across
 
 
-@pytest.mark.parametrize("pattern", sorted(patterns.CONTRAST) + sorted(patterns.WHOLE))
+@pytest.mark.parametrize("pattern", sorted(texture.CONTRAST) + sorted(texture.WHOLE))
 def test_tones_lie_between_nought_and_one(pattern):
-    tone = patterns.tones(generator(0, "test", pattern), pattern, (90, 130), 160.0)
+    tone = texture.tones(generator(0, "test", pattern), pattern, (90, 130), 160.0)
     assert tone.shape == (90, 130)
     assert tone.min() >= 0
     assert tone.max() <= 1

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline import taxonomy
-from pipeline.corpus.furniture import sizes
+from pipeline.card import cards
 from pipeline.corpus.houses.house import make_house
 from pipeline.corpus.houses.records import House
 from pipeline.corpus.houses.stock import Stock
@@ -59,7 +59,7 @@ def stock() -> Stock:
     for category in taxonomy.load().categories.values():
         for k in range(4):
             stretch = rng.uniform(0.9, 1.1, 2)
-            w, d, h = SIZES.get(category.name) or sizes.load()[category.name].mean.tolist()
+            w, d, h = SIZES.get(category.name) or cards()[category.name].size.mean
             if category.super == "kitchen":  # units come in widths
                 w = (0.4, 0.6, 0.8, 0.9)[k]
             size = (round(w * float(stretch[0]), 3), round(d * float(stretch[1]), 3), h)

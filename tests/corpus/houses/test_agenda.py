@@ -8,9 +8,8 @@ from sample_houses import house
 
 from pipeline.corpus import front_statistics
 from pipeline.corpus.houses import rates
-from pipeline.corpus.houses.room_list import PRIVATE
-from pipeline.corpus.houses.room_sampling import BLOCK, KINDS, MOST_PRIVATE, agenda, chances
-from pipeline.corpus.houses.stratified_draws import Deal
+from pipeline.corpus.houses.planner import BLOCK, KINDS, MOST_PRIVATE, PRIVATE, agenda, chances
+from pipeline.corpus.houses.rates import Deal
 
 
 def test_furnished_rooms_come_in_the_observed_shares_and_types():

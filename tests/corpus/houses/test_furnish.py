@@ -11,11 +11,10 @@ from shapely.affinity import rotate
 from shapely.geometry import LineString, Point, Polygon, box
 
 from pipeline import taxonomy
-from pipeline.corpus.houses import dining, walkable_grid
+from pipeline.corpus.houses import living
 from pipeline.corpus.houses.house import make_house
-from pipeline.corpus.houses.planner import make_plan
-from pipeline.corpus.houses.room_occupancy import Space
-from pipeline.corpus.houses.room_sampling import agenda
+from pipeline.corpus.houses.planner import agenda, make_plan
+from pipeline.corpus.houses.room_occupancy import Space, problems
 from pipeline.manifest import digest
 from pipeline.seeds import generator
 
@@ -95,7 +94,7 @@ def test_a_robot_gets_from_door_to_door_and_near_most_things(home):
         if min(np.ptp(room.polygon, axis=0)) < 1.2:
             continue
         space.items = [i for i in home.items if i.room == k and not small(i)]
-        cut_off, far = walkable_grid.problems(space)
+        cut_off, far = problems(space)
         assert cut_off == 0, room.type
         assert not far, room.type
 
@@ -163,7 +162,7 @@ def test_four_chairs_at_a_square_table_have_a_side_each_and_room_beside_each_oth
     model = {m.category: m for models in stock().by_category.values() for m in models}
     chair = model["dining_chair"]
     for side in (0.8, 0.9, 1.1):
-        seats = dining.seats_at(replace(model["dining_table"], size=(side, side, 0.75)), chair, 4, -0.1)
+        seats = living.seats_at(replace(model["dining_table"], size=(side, side, 0.75)), chair, 4, -0.1)
         w, d = chair.size[:2]
         boxes = [rotate(box(x - w / 2, y - d / 2, x + w / 2, y + d / 2), turn, use_radians=True) for x, y, turn in seats]
         assert sorted(turn for *_, turn in seats) == pytest.approx([-math.pi / 2, 0.0, math.pi / 2, math.pi])

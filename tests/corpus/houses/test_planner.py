@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 from sample_houses import houses
 
-from pipeline.corpus.houses import room_list
-from pipeline.corpus.houses.planner import LARGEST_AISLE, make_plan
-from pipeline.corpus.houses.room_sampling import CORRIDORS, agenda
+from pipeline.corpus.houses.planner import AREAS, CORRIDORS, HIGH, LARGEST_AISLE, LOW, agenda, make_plan, sample
 from pipeline.entities.plan import hops
 from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan.program.completion import complete
@@ -41,9 +39,9 @@ def test_outlines_are_square():  # what furnishes rooms knows no other walls
 
 def test_areas_are_near_what_the_types_have():
     found = [(r.type, r.area) for plan in PLANS for r in plan.rooms]
-    for room_type, (mean, _, least, most) in room_list.AREAS.items():
+    for room_type, (mean, _, least, most) in AREAS.items():
         sizes = [a for t, a in found if t == room_type]
-        assert all(room_list.LOW * least <= a <= room_list.HIGH * most for a in sizes), room_type
+        assert all(LOW * least <= a <= HIGH * most for a in sizes), room_type
         if len(sizes) >= 30:
             assert np.mean(sizes) == pytest.approx(mean, rel=0.2), room_type
     assert all((a < LARGEST_AISLE) == (t == "Aisle") for t, a in found if t in {"Aisle", "Corridor"})
@@ -64,7 +62,7 @@ def test_houses_have_bedrooms_a_kitchen_and_a_bath():
 
 def test_a_program_is_whole_as_it_is_drawn():
     for k in range(40):
-        program, types = room_list.sample(generator(1, "test-list", k), agenda(1, k).rooms)
+        program, types = sample(generator(1, "test-list", k), agenda(1, k).rooms)
         assert [r.id for r in complete(program).rooms] == list(types)
 
 

@@ -10,9 +10,8 @@ from shapely.geometry import Polygon
 
 from pipeline import taxonomy
 from pipeline.corpus.furniture.catalogue import catalogue
-from pipeline.corpus.furniture.level_tops import level, surfaces_of
 from pipeline.corpus.houses.house import make_house
-from pipeline.corpus.houses.stock import Stock
+from pipeline.corpus.houses.stock import Stock, level, surfaces_of
 
 SMALL = taxonomy.load().small
 HOUSES = houses(24)
