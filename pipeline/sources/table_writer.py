@@ -7,8 +7,7 @@ from pathlib import Path
 
 from pipeline import tables
 from pipeline.errors import ContentError
-from pipeline.sources.house_rows import HouseRows, number_scenes
-from pipeline.sources.library_rows import LibraryRows
+from pipeline.sources.rows import HouseRows, LibraryRows, number_scenes
 from schemas.assets import ASSET_JOINTS, ASSET_PARTS, ASSETS
 from schemas.objects import OBJECTS
 from schemas.openings import OPENINGS

@@ -14,8 +14,8 @@ from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.category_signs import Signs
 from pipeline.sources.articulated.part_classes import box_corners
 from pipeline.sources.articulated.partnet import read_shape
-from pipeline.sources.category_sizes import sizes
 from pipeline.sources.guarded import Folder
+from pipeline.sources.sizes import sizes
 from tests.sources import making
 from tests.sources.reading import read
 

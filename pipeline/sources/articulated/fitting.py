@@ -6,7 +6,7 @@ is refused.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +55,9 @@ def fit_shape(
         if candidates:
             best, fits = max(candidates, key=lambda entry: entry[1][0].likelihood - entry[0].cost)
             what = ", ".join(filter(None, (best.what, "wide priors" if wide else ""))) or "as drawn"
-            return _add_note(best.shape, f"{what}: rms {fits[0].rms:.2f} as {fits[0].category}"), fits
+            shape = best.shape.copied()
+            shape.notes.append(("model", "refitted", f"{what}: rms {fits[0].rms:.2f} as {fits[0].category}"))
+            return shape, fits
     return shape, ()
 
 
@@ -99,7 +101,3 @@ def _fits(
 def _extent(shape: ArticulatedShape) -> Floats:
     low, high = shape.bounds()
     return np.asarray(high - low)
-
-
-def _add_note(shape: ArticulatedShape, detail: str) -> ArticulatedShape:
-    return replace(shape, notes=(*shape.notes, ("model", "refitted", detail)))

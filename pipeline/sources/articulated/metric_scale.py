@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from pipeline.sources.articulated.category_signs import Signs, log_likelihood
 from pipeline.sources.articulated.proportions import Proportions
-from pipeline.sources.category_sizes import sizes
+from pipeline.sources.sizes import sizes
 
 Floats = NDArray[np.float64]
 COMMON = 30  # models that every category counts beside its own, so that none is ruled out for being rare

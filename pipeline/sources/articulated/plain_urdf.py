@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.metric_scale import UNITS
-from pipeline.sources.articulated.part_inference import complete_shape
-from pipeline.sources.articulated.shape import ArticulatedShape, below
+from pipeline.sources.articulated.part_boxes import complete_shape
+from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.articulated.shape_reader import Hints, ShapeReader
 from pipeline.sources.articulated.urdf import MAX_URDF, Urdf, parse_urdf
 from pipeline.sources.guarded import Folder
@@ -101,7 +101,7 @@ def _ways(shape: ArticulatedShape) -> list[Floats]:
     low, high = shape.bounds()
     ways = []
     for joint in shape.joints:
-        points = np.concatenate([shape.bodies[k].points() for k in sorted(below(shape.joints, joint.child))])
+        points = shape.points_below(joint.child)
         if np.ptp(points, axis=0).max() < 0.15 * (high - low).max() or joint.type == "continuous":
             continue
         way = joint.axis if joint.type == "prismatic" else np.cross(joint.axis, points.mean(axis=0) - joint.origin)

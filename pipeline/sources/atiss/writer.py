@@ -71,8 +71,8 @@ def _refusal(row: Row, objects: Sequence[Row], known: Sequence[Row], kind: Kind)
         return f"{len(objects)} objects"
     if len(known) < len(objects):
         return f"holds {', '.join(sorted({o['category'] for o in objects if o not in known}))}"
-    if kind.needs and not kind.needs & {o["category"] for o in known}:
-        return f"none of {', '.join(sorted(kind.needs))}"
+    if kind.needs and not set(kind.needs) & {o["category"] for o in known}:
+        return f"none of {', '.join(kind.needs)}"
     if top > HIGHEST or low < LOWEST:
         return f"objects from {low:.3f} to {top:.3f} m"
     return f"floor of {span[0]:.1f} x {span[1]:.1f} m" if span.max() > kind.side else ""

@@ -34,6 +34,11 @@ class Furniture:
     box: tuple[float, float, float] | None
     foot: float | None = None
 
+    @property
+    def kinds(self) -> tuple[str, str]:
+        """Names that may be a super-category or a title group."""
+        return self.category, self.title.split("/", 1)[0]
+
 
 @dataclass(frozen=True, slots=True)
 class MeshRecord:
@@ -157,7 +162,8 @@ def parse_house(tree: Any, name: str, arrays: Sequence[bytes] = ()) -> HouseFile
     furniture = _first_by_uid((furniture_record(r) for r in _records(tree, "furniture")), name, "furniture", rejects)
     meshes = _first_by_uid((_mesh(r, arrays) for r in _records(tree, "mesh")), name, "mesh", rejects)
     rooms = tuple(_room(r, name, furniture, rejects) for r in scene["room"] if isinstance(r, dict))
-    return HouseFile(name, furniture, meshes, rooms, _entry_rooms(tree), tuple(rejects), uid)
+    entries = (door for door in _records(tree.get("extension"), "door") if door.get("type") == "entryDoor")
+    return HouseFile(name, furniture, meshes, rooms, tuple(_text(door.get("roomId")) for door in entries), tuple(rejects), uid)
 
 
 def declared_box(record: Mapping[str, Any]) -> tuple[float, float, float] | None:
@@ -186,9 +192,9 @@ def _whd(values: Any, *, y_up: bool) -> tuple[float, float, float] | None:
     return (a, c, b) if y_up else (a, b, c)
 
 
-def _records(tree: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
+def _records(tree: Any, key: str) -> list[dict[str, Any]]:
     """Return the records of a list that another dialect may lack."""
-    entries = tree.get(key)
+    entries = tree.get(key) if isinstance(tree, dict) else None
     return [r for r in entries if isinstance(r, dict)] if isinstance(entries, list) else []
 
 
@@ -257,12 +263,6 @@ def _child(record: Mapping[str, Any]) -> Child:
 
     pose = vector("pos", (0, 0, 0)), vector("rot", (0, 0, 0, 1)), vector("scale", (1, 1, 1))
     return Child(ref, _text(record.get("instanceid")), *pose, _text(record.get("replace_jid")))
-
-
-def _entry_rooms(tree: Mapping[str, Any]) -> tuple[str, ...]:
-    extension = tree.get("extension")
-    doors = _records(extension, "door") if isinstance(extension, dict) else []
-    return tuple(_text(d.get("roomId")) for d in doors if d.get("type") == "entryDoor")
 
 
 def _text(value: Any) -> str:
