@@ -126,7 +126,7 @@ def _part(part: ShapePart, middle: Floats, scale: float) -> PartBox:
     return PartBox(part.body, part.part_class, centre, np.round(part.axes, 9) + 0.0, size, part.annotated)
 
 
-def _unique(bodies: tuple[ShapeBody, ...]) -> list[ShapeBody]:
+def _unique(bodies: Sequence[ShapeBody]) -> list[ShapeBody]:
     """Return the bodies under names that differ."""
     names = distinct_names(["base", *(body.name for body in bodies[1:])])
     return [replace(body, name=name) for body, name in zip(bodies, names, strict=True)]

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.category_signs import signs
@@ -20,7 +19,6 @@ from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.meshes.mesh_solids import Part
 from pipeline.sources.settings import ModelLimits
 
-Floats = NDArray[np.float64]
 AS_DRAWN, ALONG = (0, 1, 2), (1, 0, 2)  # its own width and depth, and exchanged: built along its depth, its front stays in front
 # Rotations to what lies and what stands, and the log-likelihood that it costs to believe them.
 LAID = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # on its back: the front looks up
@@ -64,7 +62,7 @@ def fit_shape(
 def _as_drawn(shape: ArticulatedShape, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits) -> tuple[Fit, ...]:
     """Return the fits as drawn; a file by itself is taken to be to scale where that makes it furniture."""
     if shape.source == "urdf":
-        extent, observed = _extent(shape), signs(shape, base)
+        extent, observed = shape.extent, signs(shape, base)
         for unit in UNITS:
             tried = (metric_scale.metric(extent, c, observed, unit) for c in categories)
             kept = metric_scale.best(tried, rms=metric_scale.METRIC, keep=limits.fit_keep, margin=limits.fit_margin)
@@ -88,7 +86,7 @@ def _variants(shape: ArticulatedShape) -> Iterator[_Variant]:
 def _fits(
     variant: _Variant, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits, own: Proportions | None, *, wide: bool
 ) -> tuple[Fit, ...]:
-    extent, observed = _extent(variant.shape)[list(variant.order)], signs(variant.shape, base)
+    extent, observed = variant.shape.extent[list(variant.order)], signs(variant.shape, base)
     if not wide:
         tried = [metric_scale.fit(extent, c, observed) for c in categories]
         return metric_scale.best(tried, rms=limits.fit_rms, keep=limits.fit_keep, margin=limits.fit_margin)
@@ -96,8 +94,3 @@ def _fits(
     speaks = own if variant.order == AS_DRAWN and variant.cost <= FOLD else None
     tried = [metric_scale.wide(extent, c, observed, speaks) for c in categories]
     return metric_scale.best(tried, rms=np.inf, keep=limits.fit_keep, margin=limits.fit_margin)
-
-
-def _extent(shape: ArticulatedShape) -> Floats:
-    low, high = shape.bounds()
-    return np.asarray(high - low)

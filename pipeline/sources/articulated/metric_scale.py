@@ -42,8 +42,8 @@ class Fit:
     fitted: bool
 
 
-def fit(extent: Floats, category: str, observed: Signs | None = None) -> Fit | None:
-    """Fit a category's sizes to an object of `extent` (w, d, h) [units], or None without statistics.
+def fit(extent: Floats, category: str, observed: Signs | None = None, unit: float = 0.0) -> Fit | None:
+    """Fit a category's sizes to an object of `extent` (w, d, h) [units], at `unit` metres per unit where that is known; None without statistics.
 
     With e = log extent and N(m, s^2) the logarithm of the sizes, log scale = sum((m - e) / s^2) / sum(1 / s^2).
     """
@@ -52,16 +52,16 @@ def fit(extent: Floats, category: str, observed: Signs | None = None) -> Fit | N
         return None
     location, spread = known.logarithmic()
     weight = 1 / spread**2
-    log_scale = float(((location - np.log(extent)) * weight).sum() / weight.sum())
-    return _at(extent, category, math.exp(log_scale), observed, fitted=True)
+    scale = unit or math.exp(float(((location - np.log(extent)) * weight).sum() / weight.sum()))
+    z = (np.log(extent) + math.log(scale) - location) / spread
+    likelihood = float(-0.5 * (z**2).sum() - np.log(spread).sum() - 1.5 * math.log(2 * math.pi))
+    return _fit_at(category, scale, z, likelihood, observed, fitted=not unit)
 
 
 def metric(extent: Floats, category: str, observed: Signs | None = None, unit: float = 1.0) -> Fit | None:
     """Return the fit of an object that is to scale already, of `unit` metres per unit, or None where it is no such thing."""
-    if sizes().get(category) is None or extent.min() <= 0 or extent[2] * unit > TALLEST:
-        return None
-    candidate = _at(extent, category, unit, observed, fitted=False)
-    return candidate if candidate.rms <= METRIC else None
+    candidate = fit(extent, category, observed, unit) if extent[2] * unit <= TALLEST else None
+    return candidate if candidate and candidate.rms <= METRIC else None
 
 
 def wide(extent: Floats, category: str, observed: Signs | None = None, own: Proportions | None = None) -> Fit | None:
@@ -89,17 +89,12 @@ def wide(extent: Floats, category: str, observed: Signs | None = None, own: Prop
     if off[1] > AGREE or float(np.abs(asked - tried[k]).max()) > ODD:
         return None
     scale = round(math.exp(float(tried[k])), 6)
-    likelihood = -float(cost[k] + np.log(spread).sum()) + math.log(known.count + COMMON)
-    if observed is not None:
-        likelihood += log_likelihood(observed, category, scale)
-    return Fit(category, scale, float(np.sqrt((z[k] ** 2).mean())), likelihood, fitted=True)
+    return _fit_at(category, scale, z[k], -float(cost[k] + np.log(spread).sum()), observed, fitted=True)
 
 
-def _at(extent: Floats, category: str, scale: float, observed: Signs | None, *, fitted: bool) -> Fit:
-    known = sizes()[category]
-    location, spread = known.logarithmic()
-    z = (np.log(extent) + math.log(scale) - location) / spread
-    likelihood = float(-0.5 * (z**2).sum() - np.log(spread).sum() - 1.5 * math.log(2 * math.pi)) + math.log(known.count + COMMON)
+def _fit_at(category: str, scale: float, z: Floats, likelihood: float, observed: Signs | None, *, fitted: bool) -> Fit:
+    """Return the fit of sides that are `z` (3,) deviations off; how common the category is and what is observed add to the likelihood."""
+    likelihood += math.log(sizes()[category].count + COMMON)
     if observed is not None:
         likelihood += log_likelihood(observed, category, scale)
     return Fit(category, round(scale, 6), float(np.sqrt((z**2).mean())), likelihood, fitted)

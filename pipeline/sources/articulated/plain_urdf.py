@@ -23,6 +23,7 @@ from pipeline.sources.guarded import Folder
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
+UPRIGHT = {2: np.eye(3), 1: np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}  # rotations that bring an axis to z
 SNAP = 0.01  # [rad] an angle this near to a right one is one
 FURNITURE = "StorageFurniture"
 # Words of everyday language for PartNet's model categories; those for ours stand on their cards.
@@ -76,17 +77,11 @@ def orient_shape(shape: ArticulatedShape, categories: Sequence[str]) -> Articula
     """
     tried = []
     for up in (2, 1):
-        turned = shape.turned(_upright(up))
+        turned = shape.turned(UPRIGHT[up])
         turned = turned.turned(_about(_heading(turned)))
-        low, high = turned.bounds()
-        scores = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.metric(high - low, c, None, unit)) is not None]
+        scores = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.metric(turned.extent, c, None, unit))]
         tried.append((_level(turned) + (0.5 if up == 2 else 0.0) + 0.2 * max(scores, default=-20.0), turned))
     return complete_shape(max(tried, key=lambda t: t[0])[1])
-
-
-def _upright(up: int) -> Floats:
-    """Return the rotation that brings axis `up` to z: none, or y to z about x."""
-    return np.eye(3) if up == 2 else np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 def _about(heading: int) -> Floats:
@@ -98,11 +93,11 @@ def _about(heading: int) -> Floats:
 
 def _ways(shape: ArticulatedShape) -> list[Floats]:
     """Return the directions (3,) in which doors and drawers set off, the small ones such as knobs left out."""
-    low, high = shape.bounds()
+    largest = shape.extent.max()
     ways = []
     for joint in shape.joints:
         points = shape.points_below(joint.child)
-        if np.ptp(points, axis=0).max() < 0.15 * (high - low).max() or joint.type == "continuous":
+        if np.ptp(points, axis=0).max() < 0.15 * largest or joint.type == "continuous":
             continue
         way = joint.axis if joint.type == "prismatic" else np.cross(joint.axis, points.mean(axis=0) - joint.origin)
         length = float(np.linalg.norm(way))
@@ -113,23 +108,16 @@ def _ways(shape: ArticulatedShape) -> list[Floats]:
 
 def _heading(shape: ArticulatedShape) -> int:
     """Return where the front is: 0 +x, 1 +y, 2 -x, 3 -y."""
-    flat = np.sum([way[:2] for way in _ways(shape)], axis=0) if _ways(shape) else np.zeros(2)
+    flat = np.sum([np.zeros(2), *(way[:2] for way in _ways(shape))], axis=0)
     if np.abs(flat).max() > 0.3:
-        return int(np.argmax([flat[0], flat[1], -flat[0], -flat[1]]))
-    low, high = shape.bounds()
-    wide = high - low
-    return 0 if wide[1] > 1.05 * wide[0] else 3
+        return int(np.argmax([*flat, *-flat]))
+    return 0 if shape.extent[1] > 1.05 * shape.extent[0] else 3
 
 
 def _level(shape: ArticulatedShape) -> float:
     """Return how well the joints suit their being upright: drawers and doors set off level, and hinges stand more often than not."""
-    score = 0.0
-    for way in _ways(shape):
-        score += 1.0 if abs(way[2]) < 0.3 else -1.0
-    for joint in shape.joints:
-        if joint.type == "revolute":
-            score += 0.3 if abs(joint.axis[2]) > 0.9 else 0.0
-    return score
+    standing = sum(joint.type == "revolute" and abs(joint.axis[2]) > 0.9 for joint in shape.joints)
+    return sum(1.0 if abs(way[2]) < 0.3 else -1.0 for way in _ways(shape)) + 0.3 * standing
 
 
 def _snap_rotations(urdf: Urdf) -> tuple[Urdf, int]:
@@ -161,7 +149,4 @@ def _snap_rotations(urdf: Urdf) -> tuple[Urdf, int]:
 
 def _words(urdf: Urdf) -> Mapping[str, str]:
     """Return {link: the words of its own name and its joint's}: "drawer_top" says what it is."""
-    words = {name: name for name in urdf.links}
-    for joint in urdf.joints:
-        words[joint.child] = f"{joint.child} {joint.name}"
-    return words
+    return {name: name for name in urdf.links} | {joint.child: f"{joint.child} {joint.name}" for joint in urdf.joints}

@@ -105,6 +105,12 @@ class ArticulatedShape:
         points = np.concatenate([m.vertices for b in self.bodies for m in b.visuals])
         return points.min(axis=0).astype(np.float64), points.max(axis=0).astype(np.float64)
 
+    @property
+    def extent(self) -> Floats:
+        """Extents (3,) of that box [units]."""
+        low, high = self.bounds()
+        return high - low
+
     def turned(self, R: Floats) -> ArticulatedShape:
         """Return the shape turned by R (3, 3)."""
         T = np.eye(4)
