@@ -5,8 +5,9 @@ Real things are drawn open (laptops), lying or upright (a remote), along their d
 is refused.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -42,55 +43,45 @@ def fit_shape(
 
     `base` are convex pieces of its body, `own` the proportions of the objects of its model category.
     """
-    fits = _as_drawn(shape, base, categories, limits)
-    if fits:
-        return shape, fits
+
+    def fits(variant: _Variant, fit_one: Callable[..., Fit | None], rms: float) -> tuple[Fit, ...]:
+        extent, observed = variant.shape.extent[list(variant.order)], signs(variant.shape, base)
+        tried = [fit_one(extent, category, observed) for category in categories]
+        return metric_scale.best(tried, rms=rms, keep=limits.fit_keep, margin=limits.fit_margin)
+
+    # A file by itself is taken to be to scale where that makes it furniture.
+    to_scale = [partial(metric_scale.metric, unit=unit) for unit in UNITS] if shape.source == "urdf" else []
+    for fit_one in (*to_scale, metric_scale.fit):
+        if found := fits(_Variant(shape, AS_DRAWN, 0.0, ""), fit_one, limits.fit_rms if fit_one is metric_scale.fit else np.inf):
+            return shape, found
     variants = list(_variants(shape))
     for wide in (False, True):
         if wide and shape.source == "urdf" and len(categories) > ANYTHING:
             break
-        candidates = [(v, f) for v in variants if (f := _fits(v, base, categories, limits, own, wide=wide))]
+        candidates = []
+        for variant in variants:
+            # Objects of a category are compared as they are drawn: turned ones are another matter.
+            speaks = own if variant.order == AS_DRAWN and variant.cost <= FOLD else None
+            how = partial(metric_scale.wide, own=speaks) if wide else metric_scale.fit
+            if found := fits(variant, how, np.inf if wide else limits.fit_rms):
+                candidates.append((found[0].likelihood - variant.cost, variant, found))
         if candidates:
-            best, fits = max(candidates, key=lambda entry: entry[1][0].likelihood - entry[0].cost)
+            _, best, found = max(candidates, key=lambda entry: entry[0])
             what = ", ".join(filter(None, (best.what, "wide priors" if wide else ""))) or "as drawn"
             shape = best.shape.copied()
-            shape.notes.append(("model", "refitted", f"{what}: rms {fits[0].rms:.2f} as {fits[0].category}"))
-            return shape, fits
+            shape.notes.append(("model", "refitted", f"{what}: rms {found[0].rms:.2f} as {found[0].category}"))
+            return shape, found
     return shape, ()
-
-
-def _as_drawn(shape: ArticulatedShape, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits) -> tuple[Fit, ...]:
-    """Return the fits as drawn; a file by itself is taken to be to scale where that makes it furniture."""
-    if shape.source == "urdf":
-        extent, observed = shape.extent, signs(shape, base)
-        for unit in UNITS:
-            tried = (metric_scale.metric(extent, c, observed, unit) for c in categories)
-            kept = metric_scale.best(tried, rms=metric_scale.METRIC, keep=limits.fit_keep, margin=limits.fit_margin)
-            if kept:
-                return kept
-    return _fits(_Variant(shape, AS_DRAWN, 0.0, ""), base, categories, limits, None, wide=False)
 
 
 def _variants(shape: ArticulatedShape) -> Iterator[_Variant]:
     less = fold_shape(shape)
     for state, cost, what in ((shape, 0.0, ""), *(((less, FOLD, "folded"),) if less is not None else ())):
-        yield _Variant(state, AS_DRAWN, cost, what)
-        yield _Variant(state, ALONG, cost + EXCHANGE, f"{what} along its depth".strip())
+        turned = [(state, cost, what)]
         if shape.source != "urdf":  # whose frame has been looked for already
-            for R, word in ((LAID, "laid on its back"), (STOOD, "stood up")):
-                turned = state.turned(R)
-                yield _Variant(turned, AS_DRAWN, cost + TURN, f"{what} {word}".strip())
-                yield _Variant(turned, ALONG, cost + TURN + EXCHANGE, f"{what} {word} along its depth".strip())
-
-
-def _fits(
-    variant: _Variant, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits, own: Proportions | None, *, wide: bool
-) -> tuple[Fit, ...]:
-    extent, observed = variant.shape.extent[list(variant.order)], signs(variant.shape, base)
-    if not wide:
-        tried = [metric_scale.fit(extent, c, observed) for c in categories]
-        return metric_scale.best(tried, rms=limits.fit_rms, keep=limits.fit_keep, margin=limits.fit_margin)
-    # Objects of a category are compared as they are drawn: turned ones are another matter.
-    speaks = own if variant.order == AS_DRAWN and variant.cost <= FOLD else None
-    tried = [metric_scale.wide(extent, c, observed, speaks) for c in categories]
-    return metric_scale.best(tried, rms=np.inf, keep=limits.fit_keep, margin=limits.fit_margin)
+            turned += [
+                (state.turned(R), cost + TURN, f"{what} {word}".strip()) for R, word in ((LAID, "laid on its back"), (STOOD, "stood up"))
+            ]
+        for other, price, how in turned:
+            yield _Variant(other, AS_DRAWN, price, how)
+            yield _Variant(other, ALONG, price + EXCHANGE, f"{how} along its depth".strip())

@@ -42,21 +42,26 @@ class ShapeReader:
     """Reads one URDF: `base` is the folder of its paths, `frame` (3, 3) turns its root's frame into ours."""
 
     def __init__(self, folder: Folder, base: str, urdf: Urdf, frame: Floats, hints: Hints, texture_limit: int) -> None:
-        self.urdf, self.hints, self.frame = urdf, hints, frame
-        self.base = base
+        self.urdf, self.hints, self.frame, self.base = urdf, hints, frame, base
+        self.moving: set[str] = set()  # links that hang on a moving joint of their own
         self.palette = Palette(folder, texture_limit)
         self.notes: list[Note] = []
         self.files = MeshFiles(folder, base, self.notes)
 
     def shape(self, source: str, source_id: str, model_cat: str) -> ArticulatedShape:
-        """Return the shape at rest, with the parts that are annotated (`part_inference` finds the others).
+        """Return the shape at rest, with the parts that are annotated (`complete_shape` finds the others).
 
         Raises SourceError `no_base`, or what a mesh file raises.
         """
         T = self._transforms(self.urdf)
         body_of, bodies, joints = self._tree(T)
         for name, link in self.urdf.links.items():
-            self._fill(bodies[body_of[name]], link, T[name], moves=self._moves(name, body_of))
+            body = bodies[body_of[name]]
+            body.visuals += self._visuals(link, T[name], len(body.visuals))
+            if link.visuals or link.collisions:
+                body.inertials.append(link.inertial and link.inertial.moved(T[name]))
+            for entry in link.collisions:
+                body.collisions += [(points, group.faces) for group, _, points in self.files.geometry(entry, T[name])]
         self._borrow_looks(bodies, body_of)
         shape = ArticulatedShape(source, source_id, model_cat, bodies, joints, [], self.palette, self.notes)
         joint_rules.drop_empty(shape, {body_of[name]: word for name, word in self.hints.named.items() if name in body_of})
@@ -98,11 +103,10 @@ class ShapeReader:
                 body_of[joint.child] = body_of[joint.parent]
                 continue
             kind, lower, upper = limits
-            body_of[joint.child] = len(bodies)
-            pose = T[joint.child]
+            self.moving.add(joint.child)
+            body_of[joint.child] = child = len(bodies)
             part, inferred = self._part_class(joint.child, kind)
-            axis, origin = pose[:3, :3] @ joint.axis, pose[:3, 3].copy()
-            child = len(bodies)
+            axis, origin = T[joint.child][:3, :3] @ joint.axis, T[joint.child][:3, 3].copy()
             joints.append(ShapeJoint(joint.name, kind, body_of[joint.parent], child, axis, origin, lower, upper, part, inferred))
             bodies.append(ShapeBody(slug(joint.child)))
         return body_of, bodies, joints
@@ -114,23 +118,12 @@ class ShapeReader:
         known = self.hints.mobility.get(link)
         return named_class(kind, self.hints.named.get(link) or (known.name if known else "")) or "other", True
 
-    def _moves(self, name: str, body_of: Mapping[str, int]) -> bool:
-        """Whether the link hangs on a moving joint of its own."""
-        return name != self.urdf.root and all(body_of[j.parent] != body_of[name] for j in self.urdf.joints if j.child == name)
-
-    def _fill(self, body: ShapeBody, link: UrdfLink, T: Floats, *, moves: bool) -> None:
-        body.visuals += self._visuals(link, T, len(body.visuals), moves=moves)
-        if link.visuals or link.collisions:
-            body.inertials.append(link.inertial and link.inertial.moved(T))
-        for shape in link.collisions:
-            body.collisions += [(points, group.faces) for group, _, points in self.files.geometry(shape, T)]
-
-    def _visuals(self, link: UrdfLink, T: Floats, start: int, *, moves: bool) -> list[Mesh]:
+    def _visuals(self, link: UrdfLink, T: Floats, start: int) -> list[Mesh]:
         meshes: list[Mesh] = []
         for shape in link.visuals:
             for group, file, points in self.files.geometry(shape, T):
                 extent = np.ptp(points[np.unique(group.faces)], axis=0)
-                part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=moves)
+                part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=link.name in self.moving)
                 material = self._material(shape, file, group)
                 mesh = visual(group, file, points, f"mesh_{start + len(meshes):03d}", material, part)
                 if mesh:
@@ -161,7 +154,7 @@ class ShapeReader:
         borrowed = [ShapeBody(body.name) for body in bodies]
         for name, link in looks.links.items():
             body = borrowed[owner[name]]
-            body.visuals += self._visuals(link, T[name], len(body.visuals), moves=self._moves(name, body_of) if name in body_of else False)
+            body.visuals += self._visuals(link, T[name], len(body.visuals))
         span = span_of(bodies)
         if all(_alike(a, b, span) for a, b in zip(bodies, borrowed, strict=True)):
             for body, other in zip(bodies, borrowed, strict=True):
