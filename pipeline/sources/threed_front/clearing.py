@@ -94,9 +94,7 @@ def _room(pieces: Sequence[Placed], floor: Polygon, bearers: Sequence[int], taxo
     size = np.array([p.pose.size[:2] for p in pieces]).reshape(-1, 2)
     low, high = np.array([p.span for p in pieces]).reshape(-1, 2).T
     cards = [taxonomy.categories[p.category] for p in pieces]
-    own = np.array(
-        [b < 0 and card.mount != "ceiling" and card.name not in taxonomy.small for b, card in zip(bearers, cards, strict=True)], bool
-    )
+    own = np.array([b < 0 and card.mount != "ceiling" and card.layout for b, card in zip(bearers, cards, strict=True)], bool)
     tuck = np.array([{"seat": 1, "table": 2}.get(card.tuck or "", 0) for card in cards])
     level = np.minimum(high[:, None], high) - np.maximum(low[:, None], low) > FLAT
     rivals = own[:, None] & own & level & (tuck[:, None] + tuck != 3)
