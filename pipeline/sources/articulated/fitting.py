@@ -50,7 +50,9 @@ def fit_shape(
         return metric_scale.best(tried, rms=rms, keep=limits.fit_keep, margin=limits.fit_margin)
 
     # A file by itself is taken to be to scale where that makes it furniture.
-    to_scale = [partial(metric_scale.metric, unit=unit) for unit in UNITS] if shape.source == "urdf" else []
+    to_scale: list[Callable[..., Fit | None]] = (
+        [partial(metric_scale.metric, unit=unit) for unit in UNITS] if shape.source == "urdf" else []
+    )
     for fit_one in (*to_scale, metric_scale.fit):
         if found := fits(_Variant(shape, AS_DRAWN, 0.0, ""), fit_one, limits.fit_rms if fit_one is metric_scale.fit else np.inf):
             return shape, found

@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +19,12 @@ from pipeline.sources.articulated.metric_scale import UNITS
 from pipeline.sources.articulated.part_boxes import complete_shape
 from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.articulated.shape_reader import Hints, ShapeReader
-from pipeline.sources.articulated.urdf import MAX_URDF, Urdf, parse_urdf
+from pipeline.sources.articulated.urdf import MAX_URDF, Shape, Urdf, UrdfJoint, parse_urdf
 from pipeline.sources.guarded import Folder
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
+Posed = TypeVar("Posed", Shape, UrdfJoint)
 UPRIGHT = {2: np.eye(3), 1: np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}  # rotations that bring an axis to z
 SNAP = 0.01  # [rad] an angle this near to a right one is one
 FURNITURE = "StorageFurniture"
@@ -117,34 +119,29 @@ def _heading(shape: ArticulatedShape) -> int:
 def _level(shape: ArticulatedShape) -> float:
     """Return how well the joints suit their being upright: drawers and doors set off level, and hinges stand more often than not."""
     standing = sum(joint.type == "revolute" and abs(joint.axis[2]) > 0.9 for joint in shape.joints)
-    return sum(1.0 if abs(way[2]) < 0.3 else -1.0 for way in _ways(shape)) + 0.3 * standing
+    return sum(1.0 if abs(float(way[2])) < 0.3 else -1.0 for way in _ways(shape)) + 0.3 * float(standing)
 
 
 def _snap_rotations(urdf: Urdf) -> tuple[Urdf, int]:
     """Return the URDF with rotations that are within SNAP of quarter turns made exact, and how many were off."""
     count = 0
 
-    def exact(T: Floats) -> Floats:
-        nonlocal count
-        near = np.round(T[:3, :3])
-        if np.abs(near @ near.T - np.eye(3)).max() > 1e-9:
-            return T
-        off = float(np.abs(T[:3, :3] - near).max())
-        if not 0 < off <= SNAP:
-            return T
-        count += off > 1e-4
-        T_snapped = T.copy()
-        T_snapped[:3, :3] = near
-        return T_snapped
+    def exact(things: tuple[Posed, ...]) -> tuple[Posed, ...]:
+        return tuple(replace(thing, T=snapped(thing.T)) for thing in things)
 
-    links = {
-        name: replace(
-            link, visuals=tuple(replace(s, T=exact(s.T)) for s in link.visuals), collisions=tuple(replace(s, T=exact(s.T)) for s in link.collisions)
-        )
-        for name, link in urdf.links.items()
-    }  # fmt: skip
-    joints = tuple(replace(j, T=exact(j.T)) for j in urdf.joints)
-    return replace(urdf, links=links, joints=joints), count
+    def snapped(pose: Floats) -> Floats:
+        nonlocal count
+        near = np.round(pose[:3, :3])
+        off = float(np.abs(pose[:3, :3] - near).max())
+        if np.abs(near @ near.T - np.eye(3)).max() > 1e-9 or not 0 < off <= SNAP:
+            return pose
+        count += off > 1e-4
+        right = pose.copy()
+        right[:3, :3] = near
+        return right
+
+    links = {k: replace(link, visuals=exact(link.visuals), collisions=exact(link.collisions)) for k, link in urdf.links.items()}
+    return replace(urdf, links=links, joints=exact(urdf.joints)), count
 
 
 def _words(urdf: Urdf) -> Mapping[str, str]:

@@ -6,6 +6,7 @@ limit, several visuals of one name, extra attributes and elements, rpy that is n
 
 import math
 import re
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import Any
 
@@ -77,7 +78,11 @@ class Urdf:
 
 def parse_urdf(data: bytes, where: str) -> Urdf:
     """Parse a URDF. Raises SourceError `not_urdf`, `bad_number` or `too_large`, naming `where`."""
-    root = _tree(data, where)
+    if not data.strip():
+        raise SourceError("not_urdf", where, "is empty")
+    root = xml_root(data, "not_urdf", where, MAX_ELEMENTS)
+    if root.tag != "robot":
+        raise SourceError("not_urdf", where, f"its root is <{str(root.tag)[:40]}>, not <robot>")
     colors = {m.get("name", ""): _color(m) for m in root.findall("material")}
     links: dict[str, UrdfLink] = {}
     for element in root.findall("link"):
@@ -92,15 +97,6 @@ def parse_urdf(data: bytes, where: str) -> Urdf:
     return _build_urdf(links, joints, where)
 
 
-def _tree(data: bytes, where: str) -> Any:
-    if not data.strip():
-        raise SourceError("not_urdf", where, "is empty")
-    root = xml_root(data, "not_urdf", where, MAX_ELEMENTS)
-    if root.tag != "robot":
-        raise SourceError("not_urdf", where, f"its root is <{str(root.tag)[:40]}>, not <robot>")
-    return root
-
-
 def _build_urdf(links: dict[str, UrdfLink], joints: list[UrdfJoint], where: str) -> Urdf:
     children: dict[str, UrdfJoint] = {}
     for joint in joints:
@@ -112,15 +108,12 @@ def _build_urdf(links: dict[str, UrdfLink], joints: list[UrdfJoint], where: str)
     roots = [name for name in links if name not in children]
     if len(roots) != 1:
         raise SourceError("not_urdf", where, f"has {len(roots)} root links, not one tree")
-    below: dict[str, list[UrdfJoint]] = {}
+    below: dict[str, list[UrdfJoint]] = defaultdict(list)
     for joint in joints:
-        below.setdefault(joint.parent, []).append(joint)
-    ordered: list[UrdfJoint] = []
-    queue = [roots[0]]
-    while queue:
-        for joint in below.get(queue.pop(0), []):
-            ordered.append(joint)
-            queue.append(joint.child)
+        below[joint.parent].append(joint)
+    ordered = list(below[roots[0]])
+    for joint in ordered:  # which grows: breadth first
+        ordered += below[joint.child]
     if len(ordered) != len(joints):
         raise SourceError("not_urdf", where, "has a loop of joints")
     return Urdf(links, tuple(ordered), roots[0])

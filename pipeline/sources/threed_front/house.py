@@ -1,5 +1,6 @@
 """One 3D-FRONT house file to rows of scenes, rooms, openings, objects and rejects."""
 
+import contextlib
 import functools
 import json
 from collections.abc import Iterator
@@ -201,13 +202,13 @@ def _evidence(house: HouseFile, rejects: list[Row]) -> list[OpeningEvidence]:
         evidence, origin = MESHES[mesh.type]
         try:
             vertices = mesh.vertices()
-            try:
-                triangles = mesh.triangles()
-            except SourceError:
-                triangles = None
-            holes.append(from_mesh(evidence, vertices, triangles, origin))
         except SourceError as error:
             rejects.append(reject("opening", f"{house.uid}/{mesh.uid}", "opening_unresolved", error.detail))
+            continue
+        triangles = None
+        with contextlib.suppress(SourceError):
+            triangles = mesh.triangles()
+        holes.append(from_mesh(evidence, vertices, triangles, origin))
     for child in (child for room in house.rooms for child in room.children):
         record = house.furniture.get(child.ref)
         if record is not None and not record.valid:

@@ -174,9 +174,10 @@ def declared_box(record: Mapping[str, Any]) -> tuple[float, float, float] | None
     one without `size`, are (width, height, depth).
     """
     size, bbox = record.get("size"), record.get("bbox")
-    nested = isinstance(bbox, list) and bbox and isinstance(bbox[0], list)
+    nested = isinstance(bbox, list) and len(bbox) > 0 and isinstance(bbox[0], list)
+    given: Any = bbox[0] if nested and bbox else bbox or size
     try:
-        a, b, c = (abs(float(v)) for v in (bbox[0] if nested else bbox or size))
+        a, b, c = (abs(float(v)) for v in given)
     except (TypeError, ValueError, OverflowError):
         return None
     if not all(math.isfinite(v) and v > 0 for v in (a, b, c)):
