@@ -179,11 +179,10 @@ def _share_notch(room: Room, k: int, j: int, centres: Floats) -> bool:
     """Whether two boxes meet over floor that one of the things in them does not cover, as far as the models tell: the notch of a sofa."""
     if not (room.pieces[k].shape or room.pieces[j].shape):
         return False
-    a, b = (_column(room.pieces[i], centres[i]) for i in (k, j))
-    return shared_shape(a, b) < NOTCH
 
+    def column(i: int) -> Placed:  # full from top to bottom wherever it is anything
+        piece = room.pieces[i]
+        pose = replace(piece.pose, position=np.array([*centres[i], piece.pose.position[2]]))
+        return replace(piece, pose=pose, shape=fill_columns(piece.shape))
 
-def _column(piece: Placed, at: Floats) -> Placed:
-    """Return the piece with its centre there, full from top to bottom wherever it is anything."""
-    pose = replace(piece.pose, position=np.array([*at, piece.pose.position[2]]))
-    return replace(piece, pose=pose, shape=fill_columns(piece.shape) if piece.shape else b"")
+    return shared_shape(column(k), column(j)) < NOTCH
