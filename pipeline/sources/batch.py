@@ -3,6 +3,7 @@
 Each task has a budget. What a file costs that exceeds it is that file: its process goes on, or another takes its place.
 """
 
+import functools
 import multiprocessing
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -61,29 +62,21 @@ def _read(step: Callable[[T, R], M], common: T, item: R) -> M | _Refusal:
         return _Refusal("internal", f"{type(error).__name__}: {error}")
 
 
-@dataclass(frozen=True, slots=True)
-class _Step(Generic[T, R, M]):
-    """A batch's step within a budget, in a worker."""
-
-    step: Callable[[T, R], M]
-    common: T
-    budget: Budget
-
-    def __call__(self, job: tuple[int, R]) -> M | _Refusal:
-        """Read one item."""
-        try:
-            with enforce(self.budget):
-                return _read(self.step, self.common, job[1])
-        except OutOfTimeError:
-            return _Refusal("out_of_time", f"{self.budget.seconds:g} s of processor time")
-        except MemoryError:
-            return _Refusal("out_of_memory", f"{self.budget.mebibytes} MiB")
+def _read_within(budget: Budget, step: Callable[[T, R], M], common: T, job: tuple[int, R]) -> M | _Refusal:
+    """Read one item within a budget, in a worker."""
+    try:
+        with enforce(budget):
+            return _read(step, common, job[1])
+    except OutOfTimeError:
+        return _Refusal("out_of_time", f"{budget.seconds:g} s of processor time")
+    except MemoryError:
+        return _Refusal("out_of_memory", f"{budget.mebibytes} MiB")
 
 
 def each(batch: Batch[T, R, M], workers: int, budget: Budget) -> Iterator[M]:
     """Yield what comes of each item, in order. Everything is read in processes of its own, with one worker too."""
     early: dict[int, M] = {}
-    step = _Step(batch.step, batch.common, budget)
+    step = functools.partial(_read_within, budget, batch.step, batch.common)
     jobs = Queue(enumerate(batch.items), None)
     count = max(1, min(workers, len(batch.items)))
     following = 0

@@ -10,8 +10,7 @@ from pipeline.entities.asset import Asset, Joint, Link, PartBox
 from pipeline.geometry.prerequisites import with_prerequisites
 from pipeline.sources.articulated.fitting import fit_shape
 from pipeline.sources.articulated.hidden_boards import without_hidden
-from pipeline.sources.articulated.metric_scale import Fit
-from pipeline.sources.articulated.proportions import Proportions
+from pipeline.sources.articulated.metric_scale import Fit, Proportions
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
 from pipeline.sources.articulated.shape_reader import distinct_names
 from pipeline.sources.densities import density

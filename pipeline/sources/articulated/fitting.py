@@ -14,8 +14,7 @@ import numpy as np
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.category_signs import signs
 from pipeline.sources.articulated.joint_rules import fold_shape
-from pipeline.sources.articulated.metric_scale import UNITS, Fit
-from pipeline.sources.articulated.proportions import Proportions
+from pipeline.sources.articulated.metric_scale import UNITS, Fit, Proportions
 from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.meshes.mesh_solids import Part
 from pipeline.sources.settings import ModelLimits

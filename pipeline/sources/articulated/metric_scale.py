@@ -8,14 +8,17 @@ size is, how large its doors, drawers, handles and boards would be, which of the
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.sources.articulated.category_signs import Signs, log_likelihood
-from pipeline.sources.articulated.proportions import Proportions
+from pipeline.sources.articulated.part_classes import text_field
+from pipeline.sources.guarded import MIB, Folder, finite, read_json
+from pipeline.sources.reasons import SourceError
 from pipeline.sources.sizes import sizes
 
 Floats = NDArray[np.float64]
@@ -25,7 +28,18 @@ METRIC = 2.5  # rms of standard deviations within which a shape passes for one t
 WIDE = 0.35  # spread of the logarithm that is added where nothing but our estimates of usual products is known
 AGREE = 2.5  # spreads within which two of three sides must agree on a scale
 ODD = math.log(15)  # by how much the third may be off: a laptop that stays open is as much higher than a closed one
+MANY = 8  # objects of a category from which on they speak for it
+LEAST = 0.05  # of a spread: a category whose objects are all alike says no more than that
+NORMAL = 1.4826  # standard deviations of a normal distribution in its median absolute deviation
 TALLEST = 2.75  # [m] that such a shape may be: rooms are 2.6 to 2.8 m high, and a chest of 3.2 m was drawn to be scaled
+
+
+@dataclass(frozen=True, slots=True)
+class Proportions:
+    """Logarithms of (w, d, h) over their geometric mean: `middle` (3,) and `spread` (3,), median and robust deviation."""
+
+    middle: Floats
+    spread: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,3 +119,33 @@ def best(fits: Iterable[Fit | None], *, rms: float, keep: int, margin: float) ->
     candidates = [f for f in fits if f is not None and f.rms <= rms]
     candidates.sort(key=lambda f: (-f.likelihood, f.category))
     return tuple(f for f in candidates[:keep] if f.likelihood >= candidates[0].likelihood - margin)
+
+
+def read_extent(source: Path, path: str) -> tuple[str, Floats] | None:
+    """Return model category and extent (w, d, h) [units] of an object as drawn, by its own small files; None where they do not say."""
+    try:
+        folder = Folder.at(source).sub(path)
+        box = read_json(folder, "bounding_box.json", MIB)
+        category = text_field(read_json(folder, "meta.json", MIB), "model_cat")
+    except (SourceError, OSError):
+        return None
+    low, high = (finite(box.get(key), 3) if isinstance(box, dict) else None for key in ("min", "max"))
+    if not category or low is None or high is None or not (high > low).all():
+        return None
+    return category, (high - low)[[0, 2, 1]]
+
+
+def spreads(objects: Iterable[tuple[str, Floats] | None]) -> Mapping[str, Proportions]:
+    """Return the proportions of every model category of which there are MANY objects."""
+    logs: dict[str, list[Floats]] = {}
+    for entry in objects:
+        if entry is not None:
+            log = np.log(entry[1])
+            logs.setdefault(entry[0], []).append(log - log.mean())
+    by_category = {}
+    for category, rows in logs.items():
+        if len(rows) >= MANY:
+            middle = np.median(rows, axis=0)
+            spread = NORMAL * np.median(np.abs(np.array(rows) - middle), axis=0)
+            by_category[category] = Proportions(middle, np.maximum(spread, LEAST))
+    return by_category

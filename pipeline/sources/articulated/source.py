@@ -8,8 +8,8 @@ from pathlib import Path, PurePosixPath
 
 from pipeline import taxonomy
 from pipeline.manifest import sha256
-from pipeline.sources.articulated import proportions
 from pipeline.sources.articulated.assets import assets
+from pipeline.sources.articulated.metric_scale import read_extent, spreads
 from pipeline.sources.articulated.partnet import URDFS, read_shape
 from pipeline.sources.articulated.plain_urdf import candidates, orient_shape, read_plain_urdf
 from pipeline.sources.batch import Batch
@@ -66,8 +66,8 @@ class Articulated(Source):
 
     def models(self, listing: Listing, reading: Reading) -> Iterator[LibraryRows]:
         """Read the proportions of all objects, then the objects."""
-        drawn = Batch("extent", proportions.read_extent, listing.root, [entry.path for entry in listing.items], lambda *_: None)
-        task = Task(listing.root, reading, proportions.spreads(reading.each(drawn)))
+        drawn = Batch("extent", read_extent, listing.root, [entry.path for entry in listing.items], lambda *_: None)
+        task = Task(listing.root, reading, spreads(reading.each(drawn)))
         yield from reading.each(
             Batch("object", read_object, task, listing.items, lambda entry, *why: LibraryRows.refused(entry.source_id, *why))
         )
