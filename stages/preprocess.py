@@ -14,12 +14,12 @@ from pipeline.execution import cores
 from pipeline.relations import files, learning
 from pipeline.relations.split import rooms_of
 from pipeline.sources import inventory
-from pipeline.sources.library_rows import LibraryRows
 from pipeline.sources.registry import configured_sources
+from pipeline.sources.rows import LibraryRows
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.source import Listing, Reading, Source
 from pipeline.sources.table_writer import write_houses, write_library
-from pipeline.sources.threed_front.mirrored import add_mirrored
+from pipeline.sources.threed_front.future import add_mirrored
 from pipeline.sources.walkable_share import Walker
 
 Used = list[tuple[Source, Listing, Reading]]

@@ -65,10 +65,10 @@ from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.floorplan import parse
 from pipeline.floorplan.program.furniture import impossible, members, natural
-from pipeline.sources import masses
 from pipeline.sources.articulated.plain_urdf import candidates
 from pipeline.sources.atiss.labels import KINDS
-from pipeline.sources.category_sizes import sizes
+from pipeline.sources.rows import mass_factor
+from pipeline.sources.sizes import sizes
 from pipeline.sources.densities import density
 
 words = taxonomy.load()
@@ -77,7 +77,7 @@ assert words.from_future("Dower Chest") == words.from_title("cabinet/ bottom dra
 assert words.from_partnet("HopeChest") == ("hope_chest",) and words.of_kind("Storage Unit")[-1] == "hope_chest"
 assert candidates("models/dowry_3.urdf", words) == candidates("a/hope_chest.urdf", words) == ("hope_chest",)
 assert KINDS["bedroom"].label("hope_chest") == "cabinet" and "hope_chest" in KINDS["bedroom"].categories("cabinet")
-assert sizes()["hope_chest"].mean[0] == 1.1 and masses.factor("hope_chest", 120.0) == 0.5 and density("cabinet", "Metal", "hope_chest") == 555.0
+assert sizes()["hope_chest"].mean[0] == 1.1 and mass_factor("hope_chest", 120.0) == 0.5 and density("cabinet", "Metal", "hope_chest") == 555.0
 for prompt in ("a flat with a bedroom with two hope chests", "Wohnung mit einem Schlafzimmer mit zwei Aussteuertruhen"):
     rooms = parse(prompt).rooms
     assert [(c.category, c.min) for r in rooms for c in r.furniture.counts] == [("hope_chest", 2)], prompt

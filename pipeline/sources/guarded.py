@@ -9,10 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, NoReturn
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pipeline.sources.reasons import SourceError
 
 MIB = 1 << 20
 MAX_JSON = 64 * MIB
+LARGEST = 1e6  # number of a box, an axis or a limit, in any unit
 # What a parsed document may cost: a list or object takes up to 250 bytes, any other value about 32. The limits keep
 # the whole below 256 MiB; a house of 2 MB has 0.2 million values.
 MAX_CONTAINERS = 300_000
@@ -101,6 +105,17 @@ def read_json(folder: Folder, relative: str, limit: int = MAX_JSON) -> Any:
     A number like 1e400 reads as infinity; whoever uses it checks (`floats`). Of duplicate keys the last wins.
     """
     return parse_json(folder.read(relative, limit), relative)
+
+
+def finite(value: Any, *shape: int) -> NDArray[np.float64] | None:
+    """Return nested lists of numbers as an array of that shape; None for anything else, and for what is not finite or beyond a million."""
+    try:
+        numbers = np.asarray(value)
+    except (ValueError, OverflowError):  # of unlike lengths
+        return None
+    if numbers.dtype.kind not in "iuf" or numbers.shape != shape or not np.isfinite(numbers).all() or np.abs(numbers).max() > LARGEST:
+        return None
+    return numbers.astype(np.float64)
 
 
 def parse_json(data: bytes, where: str, lines: int = 0, characters: int = 0) -> Any:

@@ -68,14 +68,9 @@ def read(path: Path) -> list[Entry]:
         raise ContentError(f"{path} is no inventory ({error})", remedy) from error
 
 
-def differences(listed: Iterable[Entry], there: Iterable[Entry]) -> list[str]:
-    """Return the paths that have come, gone or changed since the inventory was written, sorted."""
-    return sorted({path for path, _, _ in set(listed) ^ set(there)})
-
-
 def require_match(path: Path, source: Listing) -> None:
     """Raise ContentError, naming the first differences, when a source is not what its inventory lists."""
-    changed = differences(read(path), scan(source))
+    changed = sorted({name for name, _, _ in set(read(path)) ^ set(scan(source))})
     if changed:
         more = f" and {len(changed) - SHOWN} more" if len(changed) > SHOWN else ""
         shown = ", ".join(changed[:SHOWN])

@@ -1,14 +1,14 @@
 """What a dataset has to offer to be read: one folder of code with a `Source`, named in `registry`."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
+from pipeline.errors import ContentError
 from pipeline.execution import track
 from pipeline.sources.batch import Batch, each
-from pipeline.sources.house_rows import HouseRows
-from pipeline.sources.library_rows import LibraryRows
+from pipeline.sources.rows import HouseRows, LibraryRows
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.walkable_share import Walker
 
@@ -52,6 +52,15 @@ class Reading:
         return iter(track(each(batch, self.workers, self.settings.budget), len(batch.items), f"{batch.unit}s", unit=batch.unit))
 
 
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What every item of a source is read with: where it lies, how it is read, and what is `known` by id, such as the models of a house."""
+
+    root: Path
+    reading: Reading
+    known: Mapping[str, Any] = field(default_factory=dict)
+
+
 class Source(Protocol):
     """A dataset that can be read.
 
@@ -77,3 +86,19 @@ class Source(Protocol):
     def houses(self, listing: Listing, reading: Reading, library: LibraryRows) -> Iterator[HouseRows]:  # noqa: ARG002 - likewise
         """Read its houses, if it has any; the models of all sources are in the `library`."""
         return iter(())
+
+
+def require_folders(key: str, root: Path, parts: Iterable[str] = ()) -> None:
+    """Raise ContentError, naming the key of params.yaml, where a source's folder or a part of it is missing."""
+    for folder in (root, *(root / part for part in parts)):
+        if not folder.is_dir():
+            remedy = "name the folder of the data with `sfgen doctor --use PATH`, or make the embedded corpus with `dvc repro corpus`"
+            raise ContentError(f"preprocess.sources.{key}: {folder} is {'no folder' if folder.exists() else 'missing'}", remedy)
+
+
+def below(root: Path, levels: int, closed: Collection[str] = ()) -> Iterator[Path]:
+    """Yield the folders below, the nearest first; those named in `closed` are not looked into."""
+    layer = [root]
+    for _ in range(levels):
+        layer = [p for folder in layer if folder.name not in closed for p in sorted(folder.iterdir()) if p.is_dir()]
+        yield from layer

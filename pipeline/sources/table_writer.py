@@ -7,8 +7,7 @@ from pathlib import Path
 
 from pipeline import tables
 from pipeline.errors import ContentError
-from pipeline.sources.house_rows import HouseRows, number_scenes
-from pipeline.sources.library_rows import LibraryRows
+from pipeline.sources.rows import HouseRows, LibraryRows, number_scenes
 from schemas import ASSET_JOINTS, ASSET_PARTS, ASSETS, OBJECTS, OPENINGS, REJECTS, ROOMS, SCENES
 
 
@@ -24,8 +23,7 @@ class Summary:
 
     def add(self, house: HouseRows) -> None:
         """Count a house."""
-        for name, rows in (("houses", house.scenes), ("rooms", house.rooms), ("openings", house.openings), ("objects", house.objects)):
-            self.rows[name] += len(rows)
+        self.rows.update(houses=len(house.scenes), rooms=len(house.rooms), openings=len(house.openings), objects=len(house.objects))
         self.assets.update(row["asset_id"] for row in house.objects)
         self.rejects.update((row["what"], row["reason"]) for row in house.rejects)
         self.joining.update(len(row["rooms"]) for row in house.openings)
@@ -33,8 +31,7 @@ class Summary:
 
     def add_library(self, library: LibraryRows) -> None:
         """Count the models."""
-        self.rows["assets"] += len(library.assets)
-        self.rows["joints"] += len(library.joints)
+        self.rows.update(assets=len(library.assets), joints=len(library.joints))
         self.rejects.update((row["what"], row["reason"]) for row in library.rejects)
 
     def lines(self) -> Iterator[str]:
@@ -56,9 +53,8 @@ def write_houses(folder: Path, houses: Iterable[HouseRows], library: LibraryRows
     """
     summary = Summary()
     with contextlib.ExitStack() as stack:
-        opened = {
-            t.name: stack.enter_context(tables.stream(folder / f"{t.name}.parquet", t)) for t in (SCENES, ROOMS, OPENINGS, OBJECTS, REJECTS)
-        }
+        written = (SCENES, ROOMS, OPENINGS, OBJECTS, REJECTS)
+        opened = {t.name: stack.enter_context(tables.stream(folder / f"{t.name}.parquet", t)) for t in written}
         opened["rejects"].add(library.rejects)
         for house in number_scenes(houses):
             summary.add(house)
@@ -72,7 +68,6 @@ def write_houses(folder: Path, houses: Iterable[HouseRows], library: LibraryRows
 
 def write_library(folder: Path, library: LibraryRows, summary: Summary) -> None:
     """Write assets, asset_joints and asset_parts, and count them."""
-    tables.write(folder / f"{ASSETS.name}.parquet", ASSETS, library.assets)
-    tables.write(folder / f"{ASSET_JOINTS.name}.parquet", ASSET_JOINTS, library.joints)
-    tables.write(folder / f"{ASSET_PARTS.name}.parquet", ASSET_PARTS, library.parts)
+    for table, rows in ((ASSETS, library.assets), (ASSET_JOINTS, library.joints), (ASSET_PARTS, library.parts)):
+        tables.write(folder / f"{table.name}.parquet", table, rows)
     summary.add_library(library)

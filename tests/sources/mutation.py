@@ -12,17 +12,12 @@ from pathlib import Path
 import numpy as np
 import trimesh  # noqa: F401 - to load it is no part of what a file costs
 
-from pipeline.sources.articulated.objects import objects_in
-from pipeline.sources.articulated.source import ObjectTask, read_object
 from pipeline.sources.atiss.files import BOXES, STATS
 from pipeline.sources.atiss.labels import KINDS
-from pipeline.sources.atiss.reader import PeersTask, kinds_of, peers_houses, read_peers
 from pipeline.sources.batch import Batch, each
 from pipeline.sources.budget import MIB, Budget
-from pipeline.sources.settings import FrontFilters, ModelLimits
-from pipeline.sources.threed_front.source import HouseTask, ModelTask, future_models, house_files, read_front, read_future
 from tests.sources import collada, making
-from tests.sources.reading import WALKER
+from tests.sources.reading import read
 from tests.sources.test_scene_file import glb
 
 LIMIT = Budget(seconds=2.0, mebibytes=256)
@@ -192,23 +187,8 @@ def _warm():
 
 def _read(folder):
     """Return the rejects of all that lies in a folder, and how many assets and houses were read."""
-    parts = []
-    front, partnet, peers = (folder / name for name in ("front", "partnet", "peers"))
-    if front.is_dir():
-        infos, rejects = future_models(front, {})
-        models = [read_future(ModelTask(front, folder / "assets", ModelLimits(), "CC0-1.0"), info) for info in infos]
-        known = {name: model for made in models for name, model in made.models.items()}
-        task = HouseTask(front, known, FrontFilters(), "CC0-1.0", WALKER)
-        parts += [*models, *(read_front(task, file) for file in house_files(front))]
-    if partnet.is_dir():
-        task = ObjectTask(partnet, folder / "assets", ModelLimits(), "CC0-1.0")
-        parts += [read_object(task, found) for found in objects_in(partnet)]
-    if peers.is_dir():
-        kinds = kinds_of(peers)
-        task = PeersTask(peers, kinds, {}, FrontFilters(), "CC0-1.0", WALKER)
-        parts += [read_peers(task, house) for house in peers_houses(peers, kinds)]
-    rejects = [row for part in parts for row in part.rejects]
-    return rejects, sum(len(getattr(part, "assets", ())) + len(getattr(part, "scenes", ())) for part in parts)
+    made = read(folder)
+    return made.rejects, len(made.assets) + len(made.scenes)
 
 
 def peak():

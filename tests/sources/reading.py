@@ -4,12 +4,11 @@ import dataclasses
 from pathlib import Path
 from types import SimpleNamespace
 
-from pipeline.sources.house_rows import HouseRows, number_scenes
-from pipeline.sources.library_rows import LibraryRows
 from pipeline.sources.registry import SOURCES
+from pipeline.sources.rows import HouseRows, LibraryRows, number_scenes
 from pipeline.sources.settings import FrontFilters, ModelLimits, PreprocessSettings
 from pipeline.sources.source import Reading
-from pipeline.sources.threed_front.mirrored import add_mirrored
+from pipeline.sources.threed_front.future import add_mirrored
 from pipeline.sources.threed_front.source import HOUSES
 from pipeline.sources.walkable_share import Walker
 from tests.judging import SETTINGS
@@ -22,7 +21,7 @@ class Here(Reading):
     """A reading in this process, where a test can see what it costs and change what it does."""
 
     def each(self, batch):
-        return (batch.step(batch.common, item) for item in batch.items)
+        return map(batch.read, batch.items)
 
 
 def read(root, *, front="front", partnet="partnet", filters=None, limits=None):

@@ -5,16 +5,14 @@ import pytest
 import yaml
 from shapely.geometry import Polygon
 
-from pipeline import tables, taxonomy
+from pipeline import tables
 from pipeline.sources import inventory, registry
 from pipeline.sources.batch import Batch
-from pipeline.sources.folders import require_folders
 from pipeline.sources.guarded import MIB, Folder
-from pipeline.sources.house_rows import HouseRows
-from pipeline.sources.identity import slug
-from pipeline.sources.reasons import SourceError, reject
-from pipeline.sources.settings import FrontFilters
-from pipeline.sources.source import Listing, Source
+from pipeline.sources.reasons import SourceError
+from pipeline.sources.rows import HouseRows, slug
+from pipeline.sources.settings import PreprocessSettings
+from pipeline.sources.source import Listing, Reading, Source, Task, require_folders
 from pipeline.sources.threed_front.floors import outline
 from pipeline.sources.threed_front.furniture import Placed
 from pipeline.sources.threed_front.house import rows_of
@@ -43,36 +41,28 @@ class Sketches(Source):
         return Listing(self.key, root, (".",), (("rooms", len(files)),), items=tuple(files))
 
     def houses(self, listing, reading, _library):
-        task = listing.root, reading.settings.filters, reading.licence, reading.walker
-        yield from reading.each(Batch("house", read_sketch, task, listing.items, refused))
-
-
-def refused(file, reason, detail):
-    return HouseRows(rejects=[reject("house", file, reason, detail)])
+        yield from reading.each(Batch("house", read_sketch, Task(listing.root, reading), listing.items, HouseRows.refused))
 
 
 def read_sketch(task, file):
-    root, filters, licence, walker = task
     try:
-        head, *lines = Folder.at(root).read(file, MIB).decode().splitlines()
+        head, *lines = Folder.at(task.root).read(file, MIB).decode().splitlines()
         kind, w, d = head.split()
         if kind == "spin":
             while True:
                 pass
         corners = np.array([[0, 0, 0], [float(w), 0, 0], [float(w), 0, -float(d)], [0, 0, -float(d)]])
         floor = outline(corners[[[0, 1, 2], [0, 2, 3]]])
-        room = ReadRoom(RoomRecord(kind, kind, ()), slug("r", kind), kind, floor, Polygon(floor.polygon), filters.ceiling, [])
+        room = ReadRoom(RoomRecord(kind, kind, ()), slug("r", kind), kind, floor, Polygon(floor.polygon), 2.7, [])
         for number, line in enumerate(lines):
             category, *numbers = line.split()
             x, y, yaw, *size = map(float, numbers)
             pose = Pose(np.array([x, y, 0.0]), yaw, np.array(size), mirrored=False)
             child = Child(str(number), str(number), pose.position, NO_TURN, ONE)
             room.objects.append(Placed(child, "", category, "", pose, ONE, False, ()))
-        return rows_of(HouseFile(file, {}, {}, (), (), ()), [room], HouseRows(file), taxonomy.load(), filters, licence, walker)
-    except SourceError as error:
-        return refused(file, error.code, error.detail)
+        return rows_of(HouseFile(file, {}, {}, (), (), ()), [room], HouseRows(file), task)
     except ValueError as error:
-        return refused(file, "bad_structure", str(error))
+        raise SourceError("bad_structure", file, str(error)) from error
 
 
 @pytest.fixture
@@ -88,7 +78,9 @@ def root(tmp_path, monkeypatch):
     (tmp_path / "params.yaml").write_text(yaml.safe_dump({"preset": "a", "presets": {"a": {}}, "verify": VERIFY, "preprocess": settings}))
     for name, text in {"a": GOOD, "b": "bedroom four 3\n", "c": "spin 1 1\n", "d": GOOD}.items():
         (tmp_path / "sketches" / f"{name}.room").write_text(text)
-    read_sketch((tmp_path / "sketches", FrontFilters(), "", WALKER), "a.room")  # compiles what is compiled once a machine
+    read_sketch(
+        Task(tmp_path / "sketches", Reading(PreprocessSettings(), "", tmp_path, WALKER, 1)), "a.room"
+    )  # compiles what is compiled once a machine
     return tmp_path
 
 

@@ -3,14 +3,14 @@ import pytest
 from shapely.geometry import box
 
 from pipeline.sources.threed_front.opening_evidence import MESHES, MIN_WIDTH, from_furniture, from_mesh
-from pipeline.sources.threed_front.reveals import is_at_hole, jambs, merge
-from pipeline.sources.threed_front.wall_openings import Outline, resolve, touching
+from pipeline.sources.threed_front.reveals import jambs, merge
+from pipeline.sources.threed_front.wall_openings import resolve, touching
 from tests.sources import making
 from tests.sources.making import floor, slab
 from tests.sources.reading import read
 
 # Two rooms side by side in plan, a wall of 0.12 m between; the file's z is minus our y.
-ROOMS = [Outline("left", box(0, -4, 4, 0)), Outline("right", box(4.12, -4, 6, 0))]
+ROOMS = {"left": box(0, -4, 4, 0), "right": box(4.12, -4, 6, 0)}
 
 
 def reveal(kind, low, high):
@@ -85,7 +85,7 @@ def test_oblique_wall():
 
 
 def test_rooms_without_a_wall_between_are_open():
-    rooms = [Outline("a", box(0, 0, 4, 4)), Outline("b", box(4, 1, 7, 3)), Outline("c", box(4.12, 5, 7, 8))]
+    rooms = {"a": box(0, 0, 4, 4), "b": box(4, 1, 7, 3), "c": box(4.12, 5, 7, 8)}
     (made,) = touching(rooms, 2.7, [])
     assert (made.kind, made.rooms, made.opening_id) == ("open", ("a", "b"), "opening_0")
     assert made.width == pytest.approx(2, abs=0.1)
@@ -94,7 +94,7 @@ def test_rooms_without_a_wall_between_are_open():
 def test_floors_that_meet_under_a_door_are_that_door():
     """Real floors reach under their doors; where no door is told, a doorway it is all the same."""
     strip = box(4, -1.9, 4.12, -1.0)
-    rooms = [Outline("left", ROOMS[0].polygon.union(strip)), ROOMS[1]]
+    rooms = {"left": ROOMS["left"].union(strip), "right": ROOMS["right"]}
     door = resolve(reveal("door", (4, 0, 1), (4.12, 2.1, 1.9)), rooms, "o", 0.4)
     assert touching(rooms, 2.7, [door]) == []
     (made,) = touching(rooms, 2.7, [])
@@ -104,7 +104,7 @@ def test_floors_that_meet_under_a_door_are_that_door():
 
 def test_floors_that_touch_on_both_sides_of_a_door_are_not_open_to_each_other():
     """A reveal has a wall around it, although the floors meet in the middle of it."""
-    rooms = [Outline("left", box(0, -4, 4, 0)), Outline("right", box(4, -4, 6, 0))]
+    rooms = {"left": box(0, -4, 4, 0), "right": box(4, -4, 6, 0)}
     door = resolve(reveal("door", (3.94, 0, 1), (4.06, 2.1, 1.9)), rooms, "o", 0.4)
     assert touching(rooms, 2.7, [door]) == []
     assert [o.kind for o in touching(rooms, 2.7, [])] == ["open"]
@@ -121,7 +121,7 @@ def test_jambs_by_themselves_make_a_door():
     assert door.depth == pytest.approx(0.12)
     whole = reveal("door", (4, 0, 1), (4.12, 2.1, 1.9))
     assert jambs([left, right], [whole])[0] == []
-    assert is_at_hole(left.centre, [whole])
+    assert whole.reaches(left.centre)
     assert jambs([left], []) == ([], [left])
     low = reveal("door", (4, 0, 1.9), (4.12, 1.2, 1.901))
     assert jambs([left, low], [])[0] == []
@@ -136,7 +136,7 @@ def test_walls_and_bays_of_any_usual_depth(depth):
 @pytest.mark.parametrize("thickness", [0.12, 0.2, 0.24, 0.3])
 @pytest.mark.parametrize("side", [0.0, 0.5, 1.0])
 def test_a_leaf_anywhere_in_a_wall_joins_its_rooms(thickness, side):
-    rooms = [Outline("left", box(0, -4, 4, 0)), Outline("right", box(4 + thickness, -4, 7, 0))]
+    rooms = {"left": box(0, -4, 4, 0), "right": box(4 + thickness, -4, 7, 0)}
     leaf = from_furniture("door/single swing door", np.array([4 + side * thickness, 0, 2.0]), np.pi / 2, None)
     assert resolve(leaf, rooms, "o", 0.4).rooms == ("left", "right")
 
@@ -162,6 +162,6 @@ def test_a_hole_within_one_room_joins_nothing():
 
 
 def test_a_floor_that_reaches_under_the_entrance_makes_no_room_of_the_outside():
-    rooms = [Outline("left", box(0, -4, 4, 0).union(box(4, -1.9, 4.24, -1.0)))]
+    rooms = {"left": box(0, -4, 4, 0).union(box(4, -1.9, 4.24, -1.0))}
     made = resolve(reveal("door", (4, 0, 1), (4.24, 2.1, 1.9)), rooms, "o", 0.4)
     assert (made.kind, made.rooms) == ("entrance", ("left",))

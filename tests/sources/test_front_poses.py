@@ -58,7 +58,7 @@ def test_placed_box_is_the_transformed_box(yaw, magnitude, signs, position):
     """Off-centre models, stretched and mirrored: footprint and heights equal those of the transformed corners."""
     box = Box((-0.3, -0.1, -0.7), (0.9, 1.2, 0.4))
     scale = np.array(magnitude) * signs
-    pose = place(box, 1.0, np.array(position), yaw, scale)
+    pose = place(box, np.array(position), yaw, scale)
     corners = transformed(box, 1.0, np.array(position), yaw, scale)
     footprint = Placement("", "", "", "", pose.position, pose.yaw, pose.size).footprint()
     want = {tuple(np.round(p, 3)) for p in corners[:, :2]}
@@ -71,7 +71,7 @@ def test_placed_box_is_the_transformed_box(yaw, magnitude, signs, position):
 
 @given(angles, st.sampled_from([(1, 1, 1), (-1, 1, 1), (1, 1, -1), (-1, 1, -1)]))
 def test_front_follows_mirroring(yaw, signs):
-    pose = place(Box((-1, 0, -1), (1, 1, 1)), 1.0, np.zeros(3), yaw, np.array(signs, float))
+    pose = place(Box((-1, 0, -1), (1, 1, 1)), np.zeros(3), yaw, np.array(signs, float))
     c, s = math.cos(yaw), math.sin(yaw)
     ahead = to_ours(np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ (np.array([0, 0, 1]) * signs))
     assert np.allclose([math.sin(pose.yaw), -math.cos(pose.yaw)], ahead[:2], atol=2e-5)

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pipeline import taxonomy
 from pipeline.entities.files import encode, load_asset
 from pipeline.sources.guarded import Folder
-from pipeline.sources.identity import split_of
 from pipeline.sources.reasons import SourceError
+from pipeline.sources.rows import split_of
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.threed_front.future import ModelInfo, read_model, read_model_info
 from tests.sources import making
@@ -20,7 +19,7 @@ INFO = ModelInfo(BED, "King-size Bed", "Bed", "Modern", "", "Wood")
 
 def model(root, text=None, entry=INFO, **more):
     making.write_model(root, BED, text, **more)
-    return read_model(Folder.at(root / "3D-FUTURE-model"), entry, taxonomy.load(), ModelLimits(), "CC0-1.0")
+    return read_model(Folder.at(root / "3D-FUTURE-model"), entry, ModelLimits(), "CC0-1.0")
 
 
 def test_frame_and_size(tmp_path):
@@ -88,7 +87,7 @@ def test_textures(tmp_path):
 def test_broken_texture_leaves_a_plain_colour(tmp_path, broken):
     making.write_model(tmp_path, BED)
     (tmp_path / "3D-FUTURE-model" / BED / "texture.png").write_bytes(broken)
-    made = read_model(Folder.at(tmp_path / "3D-FUTURE-model"), INFO, taxonomy.load(), ModelLimits(), "CC0-1.0")
+    made = read_model(Folder.at(tmp_path / "3D-FUTURE-model"), INFO, ModelLimits(), "CC0-1.0")
     assert made.asset.textures == {}
     assert [r["reason"] for r in made.rejects] == ["missing_texture"]
 

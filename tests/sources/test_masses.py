@@ -12,7 +12,7 @@ from pipeline.corpus.partnet_writer import write_partnet
 from pipeline.sources.articulated import assets as articulated
 from pipeline.sources.articulated.partnet import read_shape
 from pipeline.sources.guarded import Folder
-from pipeline.sources.masses import clamp_mass, factor, mass
+from pipeline.sources.rows import clamp_mass, mass, mass_factor
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.threed_front.future import read_model, read_model_info
 
@@ -25,7 +25,7 @@ def read(tmp_path_factory):
     write_future(list(still), root / "future")
     write_partnet(list(moving), root / "partnet")
     infos, _ = read_model_info(Folder.at(root / "future"), "model_info.json")
-    made = [read_model(Folder.at(root / "future"), infos[m.model_id], words, ModelLimits(), "CC0-1.0").asset for m in still]
+    made = [read_model(Folder.at(root / "future"), infos[m.model_id], ModelLimits(), "CC0-1.0").asset for m in still]
     for model in moving:
         shape = read_shape(Folder.at(root / "partnet" / model.model_id), model.model_id, 64)
         made.append(next(articulated.assets(shape, model.model_id, (model.category,), words, ModelLimits(), "CC0-1.0"))[0])
@@ -41,13 +41,13 @@ def test_what_is_held_weighs_what_such_things_weigh(read):
         low, high = taxonomy.load().categories[asset.category].mass
         made, by = clamp_mass(asset)
         assert low * 0.999 <= mass(made) <= high * 1.001, (asset.category, mass(made))
-        assert by == pytest.approx(factor(asset.category, mass(asset)))
+        assert by == pytest.approx(mass_factor(asset.category, mass(asset)))
         if by != 1.0:
             assert np.allclose(made.links[0].inertia, asset.links[0].inertia * by)
 
 
 def test_few_have_to_be_held(read):
-    outside = [(a.category, round(mass(a), 2)) for a in read if factor(a.category, mass(a)) != 1.0]
+    outside = [(a.category, round(mass(a), 2)) for a in read if mass_factor(a.category, mass(a)) != 1.0]
     assert len(outside) < 0.1 * len(read), outside
 
 

@@ -14,8 +14,8 @@ from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.category_signs import Signs
 from pipeline.sources.articulated.part_classes import box_corners
 from pipeline.sources.articulated.partnet import read_shape
-from pipeline.sources.category_sizes import sizes
 from pipeline.sources.guarded import Folder
+from pipeline.sources.sizes import sizes
 from tests.sources import making
 from tests.sources.reading import read
 
@@ -278,7 +278,7 @@ def test_looks_come_from_the_texture_urdf_where_it_agrees(tmp_path):
     looks = text.replace("back.obj", "back_fine.obj").replace("door.obj", "door_fine.obj")
     (folder / "mobility_texture_gapartnet.urdf").write_text(looks)
     shape = read_shape(Folder.at(folder), "40000", 512)
-    assert shape.notes == ()
+    assert shape.notes == []
     assert len(shape.palette.textures) == 1
     textured = {b.name for b in shape.bodies for m in b.visuals if shape.palette.materials[m.material].texture}
     assert textured == {"base", "link_0"}

@@ -13,12 +13,13 @@ from pipeline import taxonomy
 from pipeline.errors import ContentError
 from pipeline.sources.atiss.files import BOXES, STATS, read_room, write_stats
 from pipeline.sources.atiss.labels import KINDS, kind_of
-from pipeline.sources.atiss.reader import PeersTask, kinds_of, peers_houses, read_peers
+from pipeline.sources.atiss.source import kinds_of, peers_houses, read_peers
 from pipeline.sources.atiss.writer import floor_mesh, rooms_with_objects, to_cached_room, write_kind
 from pipeline.sources.guarded import Folder
-from pipeline.sources.identity import split_of
 from pipeline.sources.reasons import SourceError
-from pipeline.sources.settings import FrontFilters
+from pipeline.sources.rows import split_of
+from pipeline.sources.settings import PreprocessSettings
+from pipeline.sources.source import Reading, Task
 from pipeline.sources.threed_front.furniture import Model
 from pipeline.sources.threed_front.poses import Box
 from tests.sources.reading import WALKER
@@ -59,9 +60,8 @@ def written(tmp_path, rooms, kind="bedroom", *, filtered=False):
 
 
 def read_all(source, models=None):
-    kinds = kinds_of(source)
-    task = PeersTask(source, kinds, models or {}, FrontFilters(), "CC0-1.0", WALKER)
-    return [read_peers(task, house) for house in peers_houses(source, kinds)]
+    task = Task(source, Reading(PreprocessSettings(), "CC0-1.0", source, WALKER, 1), models or {})
+    return [read_peers(task, house) for house in peers_houses(source, kinds_of(source))]
 
 
 def test_conventions_of_the_format(tmp_path):

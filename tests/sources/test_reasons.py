@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from pipeline.sources.atiss.labels import KINDS
-from pipeline.sources.atiss.reader import PeersTask, read_peers
+from pipeline.sources.atiss.source import read_peers
 from pipeline.sources.atiss.writer import rooms_with_objects, write_kind
 from pipeline.sources.reasons import REASONS, SourceError, reject
-from pipeline.sources.settings import FrontFilters
+from pipeline.sources.settings import PreprocessSettings
+from pipeline.sources.source import Reading, Task
 from pipeline.sources.threed_front import source
 from tests.sources import making, mobility
 from tests.sources.making import BED, CHAIR, LAMP, STAND, TABLE, chair_record, child, floor, slab
@@ -240,8 +241,8 @@ def peers(tmp, *, filtered):
 def bad_boxes(tmp):
     (tmp / "h_Bedroom-1").mkdir()
     (tmp / "h_Bedroom-1" / "boxes.npz").write_bytes(b"PK")
-    task = PeersTask(tmp, {".": KINDS["bedroom"]}, {}, FrontFilters(), "CC0-1.0", WALKER)
-    rejects = read_peers(task, ("h", ((".", "h_Bedroom-1"),))).rejects
+    task = Task(tmp, Reading(PreprocessSettings(), "CC0-1.0", tmp, WALKER, 1))
+    rejects = read_peers(task, ("h", ((KINDS["bedroom"], "h_Bedroom-1/boxes.npz"),))).rejects
     return SimpleNamespace(rejects=rejects, reasons={r["reason"] for r in rejects})
 
 

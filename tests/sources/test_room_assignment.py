@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from pipeline.sources.identity import split_of
+from pipeline.sources.rows import split_of
 from pipeline.sources.threed_front.notches import CELLS, occupancy_bits, overlap_share
 from pipeline.sources.threed_front.poses import Pose
 from tests.sources import making

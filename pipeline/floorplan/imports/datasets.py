@@ -35,7 +35,7 @@ def front_sketch(document: Mapping[str, Any], name: str) -> Sketch:
     limits = FrontFilters()
     try:
         house = parse_house(document, name)
-        rooms = rooms_of(house, taxonomy.load(), limits, rejects)
+        rooms = rooms_of(house, limits, rejects)
         if not rooms:
             raise refuse("the house has no room with a floor")
         openings, (inner, outer) = openings_of(house, rooms, limits, rejects)

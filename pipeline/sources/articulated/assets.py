@@ -6,12 +6,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Joint, Link, Mesh, PartBox
+from pipeline.entities.asset import Asset, Joint, Link, PartBox
 from pipeline.geometry.prerequisites import with_prerequisites
 from pipeline.sources.articulated.fitting import fit_shape
 from pipeline.sources.articulated.hidden_boards import without_hidden
-from pipeline.sources.articulated.metric_scale import Fit
-from pipeline.sources.articulated.proportions import Proportions
+from pipeline.sources.articulated.metric_scale import Fit, Proportions
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
 from pipeline.sources.articulated.shape_reader import distinct_names
 from pipeline.sources.densities import density
@@ -43,7 +42,8 @@ def assets(
     if not fits:
         what = shape.model_cat or "none of the categories"
         raise SourceError("no_metric_fit", shape.source_id, f"{what} of proportions {np.round(extent, 3).tolist()}")
-    bodies = _unique(shape.bodies)
+    names = distinct_names(["base", *(body.name for body in shape.bodies[1:])])
+    bodies = [replace(body, name=name) for body, name in zip(shape.bodies, names, strict=True)]
     # What fits nothing has cost no cut so far.
     tolerance = None if limits.cut == "none" else POCKET * float(np.linalg.norm(extent))
     matter = bodies_solids([(body.name, body.collisions) for body in bodies], limits, tolerance)
@@ -60,17 +60,8 @@ def assets(
             real = solid.scaled(middle, fit.scale)
             stated, note = _stated_inertial(body, real, middle, fit, kind)
             weighed += note
-            links.append(
-                link(
-                    body.name,
-                    _metric(body, middle, fit.scale),
-                    real,
-                    density(kind, "", fit.category),
-                    kind,
-                    stated,
-                    how if links else below,
-                )
-            )
+            visuals = [replace(m, vertices=((m.vertices - middle) * fit.scale).astype(np.float32)) for m in body.visuals]
+            links.append(link(body.name, visuals, real, density(kind, "", fit.category), kind, stated, how if links else below))
         shown = links if category.loose else without_hidden(links, shape.joints)
         asset = Asset(
             f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
@@ -78,7 +69,9 @@ def assets(
             shape.source, shape.source_id, licence, "", kind, dict(shape.palette.textures),
             tuple(_part(p, middle, fit.scale) for p in shape.parts),
         )  # fmt: skip
-        yield with_prerequisites(asset), fit, _rejects(shape, matter, weighed) if number == 0 else []  # what befell the folder is told once
+        notes = [*shape.notes, *(("model", *note) for note in (*(note for solid in matter for note in solid.notes), *weighed))]
+        told = [reject(what, shape.source_id, *note) for what, *note in notes] if number == 0 else []  # what befell the folder is told once
+        yield with_prerequisites(asset), fit, told
 
 
 def _stated_inertial(
@@ -103,16 +96,6 @@ def _stated_inertial(
     return stated, [("inertial_used", f"{body.name}: {stated.mass:.4g} kg")]
 
 
-def _rejects(shape: ArticulatedShape, matter: list[Solids], weighed: list[tuple[str, str]]) -> list[Row]:
-    rows = [reject(what, shape.source_id, reason, detail) for what, reason, detail in shape.notes]
-    notes = [*(note for solid in matter for note in solid.notes), *weighed]
-    return rows + [reject("model", shape.source_id, reason, detail) for reason, detail in notes]
-
-
-def _metric(body: ShapeBody, middle: Floats, scale: float) -> list[Mesh]:
-    return [replace(m, vertices=((m.vertices - middle) * scale).astype(np.float32)) for m in body.visuals]
-
-
 def _joint(joint: ShapeJoint, middle: Floats, scale: float) -> Joint:
     reach = scale if joint.type == "prismatic" else 1.0
     axis: Floats = np.round(joint.axis / float(np.linalg.norm(joint.axis)), 9) + 0.0
@@ -124,9 +107,3 @@ def _joint(joint: ShapeJoint, middle: Floats, scale: float) -> Joint:
 def _part(part: ShapePart, middle: Floats, scale: float) -> PartBox:
     centre, size = np.round((part.centre - middle) * scale, 6) + 0.0, np.round(part.size * scale, 6) + 0.0
     return PartBox(part.body, part.part_class, centre, np.round(part.axes, 9) + 0.0, size, part.annotated)
-
-
-def _unique(bodies: tuple[ShapeBody, ...]) -> list[ShapeBody]:
-    """Return the bodies under names that differ."""
-    names = distinct_names(["base", *(body.name for body in bodies[1:])])
-    return [replace(body, name=name) for body, name in zip(bodies, names, strict=True)]

@@ -38,11 +38,12 @@ class Signs:
 
 def signs(shape: ArticulatedShape, base: Sequence[Part]) -> Signs:
     """Return the signs of a shape; `base` are the convex pieces of its body."""
-    low, high = shape.bounds()
     doors = [p for p in shape.parts if p.part_class == "hinge_door"]
     drawers = [p for p in shape.parts if p.part_class == "slider_drawer"]
-    whole = max(float((high - low)[0] * (high - low)[2]), 1e-12)
-    sliding = [area for area in _sliding(shape) if area > LEAF * whole]
+    whole = max(float(shape.extent[0] * shape.extent[2]), 1e-12)
+    # What slides along the front is a door that has no class of its own; areas as seen from the front.
+    moved = [np.ptp(shape.bodies[j.child].points(), axis=0) for j in shape.joints if j.type == "prismatic" and abs(j.axis[0]) > 0.8]
+    sliding = [area for e in moved if (area := float(e[0] * e[2])) > LEAF * whole]
     front = (sum(_reach(p)[0] * _reach(p)[2] for p in doors + drawers) + sum(sliding)) / whole
     extents = [np.sort(np.ptp(p.hull, axis=0)) for p in base]
     sizes = {
@@ -72,12 +73,6 @@ def log_likelihood(observed: Signs, category: str, scale: float) -> float:
     if observed.grip is not None:
         total += _normal(observed.grip, *entry.grip)
     return total
-
-
-def _sliding(shape: ArticulatedShape) -> list[float]:
-    """Return the areas, seen from the front, of what slides along the front: doors that have no class of their own."""
-    extents = [np.ptp(shape.bodies[j.child].points(), axis=0) for j in shape.joints if j.type == "prismatic" and abs(j.axis[0]) > 0.8]
-    return [float(e[0] * e[2]) for e in extents]
 
 
 def _normal(value: float, mean: float, spread: float) -> float:

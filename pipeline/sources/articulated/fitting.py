@@ -5,22 +5,20 @@ Real things are drawn open (laptops), lying or upright (a remote), along their d
 is refused.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.category_signs import signs
 from pipeline.sources.articulated.joint_rules import fold_shape
-from pipeline.sources.articulated.metric_scale import UNITS, Fit
-from pipeline.sources.articulated.proportions import Proportions
+from pipeline.sources.articulated.metric_scale import UNITS, Fit, Proportions
 from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.meshes.mesh_solids import Part
 from pipeline.sources.settings import ModelLimits
 
-Floats = NDArray[np.float64]
 AS_DRAWN, ALONG = (0, 1, 2), (1, 0, 2)  # its own width and depth, and exchanged: built along its depth, its front stays in front
 # Rotations to what lies and what stands, and the log-likelihood that it costs to believe them.
 LAID = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # on its back: the front looks up
@@ -44,62 +42,47 @@ def fit_shape(
 
     `base` are convex pieces of its body, `own` the proportions of the objects of its model category.
     """
-    fits = _as_drawn(shape, base, categories, limits)
-    if fits:
-        return shape, fits
+
+    def fits(variant: _Variant, fit_one: Callable[..., Fit | None], rms: float) -> tuple[Fit, ...]:
+        extent, observed = variant.shape.extent[list(variant.order)], signs(variant.shape, base)
+        tried = [fit_one(extent, category, observed) for category in categories]
+        return metric_scale.best(tried, rms=rms, keep=limits.fit_keep, margin=limits.fit_margin)
+
+    # A file by itself is taken to be to scale where that makes it furniture.
+    to_scale: list[Callable[..., Fit | None]] = (
+        [partial(metric_scale.metric, unit=unit) for unit in UNITS] if shape.source == "urdf" else []
+    )
+    for fit_one in (*to_scale, metric_scale.fit):
+        if found := fits(_Variant(shape, AS_DRAWN, 0.0, ""), fit_one, limits.fit_rms if fit_one is metric_scale.fit else np.inf):
+            return shape, found
     variants = list(_variants(shape))
     for wide in (False, True):
         if wide and shape.source == "urdf" and len(categories) > ANYTHING:
             break
-        candidates = [(v, f) for v in variants if (f := _fits(v, base, categories, limits, own, wide=wide))]
+        candidates = []
+        for variant in variants:
+            # Objects of a category are compared as they are drawn: turned ones are another matter.
+            speaks = own if variant.order == AS_DRAWN and variant.cost <= FOLD else None
+            how = partial(metric_scale.wide, own=speaks) if wide else metric_scale.fit
+            if found := fits(variant, how, np.inf if wide else limits.fit_rms):
+                candidates.append((found[0].likelihood - variant.cost, variant, found))
         if candidates:
-            best, fits = max(candidates, key=lambda entry: entry[1][0].likelihood - entry[0].cost)
+            _, best, found = max(candidates, key=lambda entry: entry[0])
             what = ", ".join(filter(None, (best.what, "wide priors" if wide else ""))) or "as drawn"
-            return _add_note(best.shape, f"{what}: rms {fits[0].rms:.2f} as {fits[0].category}"), fits
+            shape = best.shape.copied()
+            shape.notes.append(("model", "refitted", f"{what}: rms {found[0].rms:.2f} as {found[0].category}"))
+            return shape, found
     return shape, ()
-
-
-def _as_drawn(shape: ArticulatedShape, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits) -> tuple[Fit, ...]:
-    """Return the fits as drawn; a file by itself is taken to be to scale where that makes it furniture."""
-    if shape.source == "urdf":
-        extent, observed = _extent(shape), signs(shape, base)
-        for unit in UNITS:
-            tried = (metric_scale.metric(extent, c, observed, unit) for c in categories)
-            kept = metric_scale.best(tried, rms=metric_scale.METRIC, keep=limits.fit_keep, margin=limits.fit_margin)
-            if kept:
-                return kept
-    return _fits(_Variant(shape, AS_DRAWN, 0.0, ""), base, categories, limits, None, wide=False)
 
 
 def _variants(shape: ArticulatedShape) -> Iterator[_Variant]:
     less = fold_shape(shape)
     for state, cost, what in ((shape, 0.0, ""), *(((less, FOLD, "folded"),) if less is not None else ())):
-        yield _Variant(state, AS_DRAWN, cost, what)
-        yield _Variant(state, ALONG, cost + EXCHANGE, f"{what} along its depth".strip())
+        turned = [(state, cost, what)]
         if shape.source != "urdf":  # whose frame has been looked for already
-            for R, word in ((LAID, "laid on its back"), (STOOD, "stood up")):
-                turned = state.turned(R)
-                yield _Variant(turned, AS_DRAWN, cost + TURN, f"{what} {word}".strip())
-                yield _Variant(turned, ALONG, cost + TURN + EXCHANGE, f"{what} {word} along its depth".strip())
-
-
-def _fits(
-    variant: _Variant, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits, own: Proportions | None, *, wide: bool
-) -> tuple[Fit, ...]:
-    extent, observed = _extent(variant.shape)[list(variant.order)], signs(variant.shape, base)
-    if not wide:
-        tried = [metric_scale.fit(extent, c, observed) for c in categories]
-        return metric_scale.best(tried, rms=limits.fit_rms, keep=limits.fit_keep, margin=limits.fit_margin)
-    # Objects of a category are compared as they are drawn: turned ones are another matter.
-    speaks = own if variant.order == AS_DRAWN and variant.cost <= FOLD else None
-    tried = [metric_scale.wide(extent, c, observed, speaks) for c in categories]
-    return metric_scale.best(tried, rms=np.inf, keep=limits.fit_keep, margin=limits.fit_margin)
-
-
-def _extent(shape: ArticulatedShape) -> Floats:
-    low, high = shape.bounds()
-    return np.asarray(high - low)
-
-
-def _add_note(shape: ArticulatedShape, detail: str) -> ArticulatedShape:
-    return replace(shape, notes=(*shape.notes, ("model", "refitted", detail)))
+            turned += [
+                (state.turned(R), cost + TURN, f"{what} {word}".strip()) for R, word in ((LAID, "laid on its back"), (STOOD, "stood up"))
+            ]
+        for other, price, how in turned:
+            yield _Variant(other, AS_DRAWN, price, how)
+            yield _Variant(other, ALONG, price + EXCHANGE, f"{how} along its depth".strip())

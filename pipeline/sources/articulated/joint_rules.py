@@ -1,17 +1,17 @@
 """What becomes of a joint as it is written: limits, direction, rest, and screws of two joints."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import JointType
+from pipeline.entities.asset import PART_CLASSES, JointType
 from pipeline.geometry.kinematics import joint_motion
 from pipeline.sources.articulated.mobility_v2 import Mobility
 from pipeline.sources.articulated.part_classes import words_of
-from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, apply, below, span_of
+from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, apply, span_of
 from pipeline.sources.articulated.urdf import UrdfJoint
 
 Floats = NDArray[np.float64]
@@ -85,74 +85,68 @@ def _from_mobility(joint: UrdfJoint, kind: JointType, known: Mobility | None) ->
     return (kind, lower, upper) if SMALLEST[kind] <= upper - lower <= TURNS else None
 
 
-def shift_to_rest(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], notes: list[Note]) -> None:
+def shift_to_rest(shape: ArticulatedShape) -> None:
     """Bring every joint to its rest, in place: 0 where the limits allow it, else the nearest limit; limits become relative to it."""
-    for number in range(len(joints)):
-        joint = joints[number]
+    for number in range(len(shape.joints)):
+        joint = shape.joints[number]
         rest = min(max(0.0, joint.lower), joint.upper)
         if rest:
-            notes.append(("joint", "joint_rest_shifted", f"{joint.name}: by {rest:.4f}, limits {joint.lower:.4f} to {joint.upper:.4f}"))
-            _shift(bodies, joints, parts, number, rest)
-        joints[number] = opening(joints[number])
+            shape.notes.append(
+                ("joint", "joint_rest_shifted", f"{joint.name}: by {rest:.4f}, limits {joint.lower:.4f} to {joint.upper:.4f}")
+            )
+            shape.shift(number, rest)
+        shape.joints[number] = shape.joints[number].opening()
 
 
-def close_drawn_open(bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], notes: list[Note]) -> None:
+def close_drawn_open(shape: ArticulatedShape) -> None:
     """Close, in place, doors, drawers and lids that are drawn open: the object's box is much smaller at their other limit.
 
     A lid closes where the box is smallest, which need be no limit; it opens from there the way that it was drawn.
     """
-    lids = [k for k, joint in enumerate(joints) if joint.part_class == "hinge_lid" and math.isfinite(joint.upper)]
-    if lids:
-        outlines = [_outline(body) for body in bodies]
-        for number in lids:
-            q = _smallest(outlines, joints, number, CLOSED)
-            if q:
-                notes.append(("joint", "joint_rest_shifted", f"{joints[number].name}: drawn open, closed by {q:.4f}"))
-                _shift(bodies, joints, parts, number, q, outlines)
-                shut = joints[number]
-                joints[number] = opening(replace(shut, lower=0.0) if q < 0 else replace(shut, upper=0.0))
-    boxes = [_box(body) for body in bodies]
-    for number, joint in enumerate(joints):
+    for number, q in _put_away(shape, CLOSED, "drawn open, closed", {"hinge_lid"}):
+        shut = shape.joints[number]
+        shape.joints[number] = (replace(shut, lower=0.0) if q < 0 else replace(shut, upper=0.0)).opening()
+    boxes = [_box(body) for body in shape.bodies]
+    for number in range(len(shape.joints)):
+        joint = shape.joints[number]
         if joint.part_class not in {"hinge_door", "slider_drawer"} or not math.isfinite(joint.upper):
             continue
-        moved = below(joints, joint.child)
-        ends = [(q, _volume(boxes, moved, joint_motion(joint, q))) for q in (0.0, joint.lower, joint.upper) if q == 0.0 or abs(q) > 1e-9]
+        volume = _volume_at(shape, boxes, number)
+        ends = [(q, volume(q)) for q in (0.0, joint.lower, joint.upper) if q == 0.0 or abs(q) > 1e-9]
         best = min(ends[1:], key=lambda e: e[1], default=ends[0])
         if best[1] < CLOSED * ends[0][1]:
-            notes.append(("joint", "joint_rest_shifted", f"{joint.name}: drawn open, closed by {best[0]:.4f}"))
-            _shift(bodies, joints, parts, number, best[0])
-            joints[number] = opening(joints[number])
-            boxes = [_box(body) for body in bodies]
+            shape.notes.append(("joint", "joint_rest_shifted", f"{joint.name}: drawn open, closed by {best[0]:.4f}"))
+            shape.shift(number, best[0])
+            shape.joints[number] = shape.joints[number].opening()
+            boxes = [_box(body) for body in shape.bodies]
 
 
 def fold_shape(shape: ArticulatedShape) -> ArticulatedShape | None:
     """Return the shape with every joint where the object's box is smallest, None where that is how it is drawn."""
-    bodies, joints, parts, notes = list(shape.bodies), list(shape.joints), list(shape.parts), list(shape.notes)
-    outlines = [_outline(body) for body in bodies]
-    for number, joint in enumerate(shape.joints):
-        if not math.isfinite(joint.upper):
-            continue
-        q = _smallest(outlines, joints, number, FOLDED)
+    folded = shape.copied()
+    for number, _ in _put_away(folded, FOLDED, "drawn spread out, folded"):
+        folded.joints[number] = folded.joints[number].opening()
+    return folded if len(folded.notes) > len(shape.notes) else None
+
+
+def _put_away(shape: ArticulatedShape, share: float, how: str, classes: Collection[str] = PART_CLASSES) -> Iterator[tuple[int, float]]:
+    """Bring joints, in place, to where the box around the shape is smallest and below `share` of what it was; yield which, and by how much."""
+    chosen = [k for k, joint in enumerate(shape.joints) if joint.part_class in classes and math.isfinite(joint.upper)]
+    outlines = [_outline(body) for body in shape.bodies] if chosen else []
+    for number in chosen:
+        q = _smallest(shape, outlines, number, share)
         if q:
-            notes.append(("joint", "joint_rest_shifted", f"{joint.name}: drawn spread out, folded by {q:.4f}"))
-            _shift(bodies, joints, parts, number, q, outlines)
-            joints[number] = opening(joints[number])
-    if len(notes) == len(shape.notes):
-        return None
-    return replace(shape, bodies=tuple(bodies), joints=tuple(joints), parts=tuple(parts), notes=tuple(notes))
+            shape.notes.append(("joint", "joint_rest_shifted", f"{shape.joints[number].name}: {how} by {q:.4f}"))
+            moved, T = shape.shift(number, q)
+            for k in moved:
+                outlines[k] = apply(T, outlines[k])
+            yield number, q
 
 
-def _smallest(outlines: Sequence[Floats], joints: Sequence[ShapeJoint], number: int, share: float) -> float:
+def _smallest(shape: ArticulatedShape, outlines: Sequence[Floats], number: int, share: float) -> float:
     """Return the position of a joint at which the box around the bodies' outlines is smallest, 0 where it is not below `share` of that at 0."""
-    joint = joints[number]
-    moved = below(joints, joint.child)
-    still = [outline for k, outline in enumerate(outlines) if k not in moved]
-    rest = np.concatenate(still) if still else np.zeros((0, 3))
-    mine = np.concatenate([outlines[k] for k in sorted(moved)])
-
-    def volume(q: float) -> float:
-        return float(np.prod(np.ptp(np.concatenate([rest, apply(joint_motion(joint, q), mine)]), axis=0)))
-
+    joint = shape.joints[number]
+    volume = _volume_at(shape, outlines, number)
     ends = (joint.lower, joint.upper)
     tried = np.linspace(*ends, STEPS) if joint.type == "revolute" else np.array(ends)
     best = min(tried.tolist(), key=volume)
@@ -162,6 +156,15 @@ def _smallest(outlines: Sequence[Floats], joints: Sequence[ShapeJoint], number: 
     end = min(ends, key=volume)
     best = end if volume(end) <= 1.02 * volume(best) else best
     return best if abs(best) > 1e-6 and volume(best) < share * volume(0.0) else 0.0
+
+
+def _volume_at(shape: ArticulatedShape, outlines: Sequence[Floats], number: int) -> Callable[[float], float]:
+    """Return the volume of the box around points of the bodies as a function of a joint's position."""
+    joint = shape.joints[number]
+    moved = shape.below(joint.child)
+    still = np.concatenate([np.zeros((0, 3)), *(points for k, points in enumerate(outlines) if k not in moved)])
+    mine = np.concatenate([outlines[k] for k in moved])
+    return lambda q: float(np.prod(np.ptp(np.concatenate([still, apply(joint_motion(joint, q), mine)]), axis=0)))
 
 
 def _outline(body: ShapeBody) -> Floats:
@@ -174,33 +177,22 @@ def _outline(body: ShapeBody) -> Floats:
     return np.asarray(points[furthest])
 
 
-def opening(joint: ShapeJoint) -> ShapeJoint:
-    """Turn the axis so that the longer side of the range is positive: from closed, motion opens."""
-    if -joint.lower > joint.upper:
-        return replace(joint, axis=-joint.axis, lower=-joint.upper, upper=-joint.lower)
-    return joint
-
-
-def without_empty(bodies: list[ShapeBody], joints: list[ShapeJoint], words: Mapping[int, str], notes: list[Note]) -> list[ShapeJoint]:
-    """Leave out joints to bodies without geometry: helper links of screws, and what moves nothing. `words` name bodies."""
-    span = span_of(bodies)
-    while True:
-        odd = next((j for j in joints if bodies[j.child].empty), None)
-        if odd is None:
-            return joints
-        after = [j for j in joints if j.parent == odd.child]
-        rest = [j for j in joints if j is not odd and j not in after]
+def drop_empty(shape: ArticulatedShape, words: Mapping[int, str]) -> None:
+    """Leave out, in place, joints to bodies without geometry: helper links of screws, and what moves nothing. `words` name bodies."""
+    span = span_of(shape.bodies)
+    while odd := next((j for j in shape.joints if shape.bodies[j.child].empty), None):
+        after = [j for j in shape.joints if j.parent == odd.child]
+        rest = [j for j in shape.joints if j is not odd and j not in after]
         if len(after) == 1:
             kept = _screw(odd, after[0], words.get(after[0].child, ""), span)
-            notes.append(
-                ("joint", "screw_collapsed", f"{odd.name} ({odd.type}) and {after[0].name} ({after[0].type}): {kept.name} is kept")
-            )
+            what = f"{odd.name} ({odd.type}) and {after[0].name} ({after[0].type}): {kept.name} is kept"
+            shape.notes.append(("joint", "screw_collapsed", what))
             part = after[0] if after[0].part_class != "other" else odd
             after = [replace(kept, parent=odd.parent, child=after[0].child, part_class=part.part_class, inferred=part.inferred)]
         else:
-            notes.append(("joint", "joint_moves_nothing", odd.name))
+            shape.notes.append(("joint", "joint_moves_nothing", odd.name))
             after = [replace(j, parent=odd.parent) for j in after]
-        joints = sorted([*rest, *after], key=lambda j: j.child)
+        shape.joints = sorted([*rest, *after], key=lambda j: j.child)
 
 
 def _screw(first: ShapeJoint, second: ShapeJoint, word: str, span: float) -> ShapeJoint:
@@ -223,26 +215,6 @@ def _screw(first: ShapeJoint, second: ShapeJoint, word: str, span: float) -> Sha
     return turn if slide.upper - slide.lower <= STROKE * span else slide
 
 
-def _shift(
-    bodies: list[ShapeBody], joints: list[ShapeJoint], parts: list[ShapePart], number: int, rest: float, outlines: list[Floats] | None = None
-) -> None:  # fmt: skip
-    """Move, in place, what hangs on a joint by `rest`; limits become relative to it."""
-    joint = joints[number]
-    T = joint_motion(joint, rest)
-    moved = below(joints, joint.child)
-    for body in moved:
-        bodies[body] = bodies[body].moved(T)
-        if outlines is not None:
-            outlines[body] = apply(T, outlines[body])
-    for k, other in enumerate(joints):
-        if other.parent in moved:
-            joints[k] = other.moved(T)
-    for k, part in enumerate(parts):
-        if part.body in moved:
-            parts[k] = part.moved(T)
-    joints[number] = replace(joint, lower=joint.lower - rest, upper=joint.upper - rest)
-
-
 def _box(body: ShapeBody) -> Floats:
     """Return the corners (8, 3) of a body's box, (0, 3) of an empty one."""
     points = body.points()
@@ -250,11 +222,6 @@ def _box(body: ShapeBody) -> Floats:
         return points
     low, high = points.min(axis=0), points.max(axis=0)
     return np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
-
-
-def _volume(boxes: Sequence[Floats], moved: set[int], T: Floats) -> float:
-    points = np.concatenate([apply(T, box) if k in moved else box for k, box in enumerate(boxes)])
-    return float(np.prod(np.ptp(points, axis=0)))
 
 
 def _note(joint: UrdfJoint, reason: str, detail: str) -> Note:

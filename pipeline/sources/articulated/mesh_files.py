@@ -53,7 +53,9 @@ class MeshFiles:
 
         A mirrored scale turns the faces. Raises SourceError for a file that is broken, too large or outside the folder.
         """
-        file = self._file(shape.mesh) if shape.mesh else _solid(shape)
+        if not shape.mesh and not shape.primitive[0]:
+            return []
+        file = self._file(shape.mesh) if shape.mesh else _solid(*primitive(*shape.primitive, shape.name))
         if file is None:
             return []
         self.total += sum(len(g.faces) for g in file.groups)
@@ -93,9 +95,5 @@ class MeshFiles:
         raise SourceError("missing_file", path, f"is of a kind that is not read ({suffix[:10]})")
 
 
-def _solid(shape: Shape) -> ObjFile | None:
-    return _plain(*primitive(*shape.primitive, shape.name)) if shape.primitive[0] else None
-
-
-def _plain(vertices: Floats, faces: Ints) -> ObjFile:
+def _solid(vertices: Floats, faces: Ints) -> ObjFile:
     return ObjFile(vertices, np.zeros((0, 2)), (ObjGroup("", "", faces, np.full_like(faces, -1)),), "")

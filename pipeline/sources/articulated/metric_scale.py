@@ -8,15 +8,18 @@ size is, how large its doors, drawers, handles and boards would be, which of the
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.sources.articulated.category_signs import Signs, log_likelihood
-from pipeline.sources.articulated.proportions import Proportions
-from pipeline.sources.category_sizes import sizes
+from pipeline.sources.articulated.part_classes import text_field
+from pipeline.sources.guarded import MIB, Folder, finite, read_json
+from pipeline.sources.reasons import SourceError
+from pipeline.sources.sizes import sizes
 
 Floats = NDArray[np.float64]
 COMMON = 30  # models that every category counts beside its own, so that none is ruled out for being rare
@@ -25,7 +28,18 @@ METRIC = 2.5  # rms of standard deviations within which a shape passes for one t
 WIDE = 0.35  # spread of the logarithm that is added where nothing but our estimates of usual products is known
 AGREE = 2.5  # spreads within which two of three sides must agree on a scale
 ODD = math.log(15)  # by how much the third may be off: a laptop that stays open is as much higher than a closed one
+MANY = 8  # objects of a category from which on they speak for it
+LEAST = 0.05  # of a spread: a category whose objects are all alike says no more than that
+NORMAL = 1.4826  # standard deviations of a normal distribution in its median absolute deviation
 TALLEST = 2.75  # [m] that such a shape may be: rooms are 2.6 to 2.8 m high, and a chest of 3.2 m was drawn to be scaled
+
+
+@dataclass(frozen=True, slots=True)
+class Proportions:
+    """Logarithms of (w, d, h) over their geometric mean: `middle` (3,) and `spread` (3,), median and robust deviation."""
+
+    middle: Floats
+    spread: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +56,8 @@ class Fit:
     fitted: bool
 
 
-def fit(extent: Floats, category: str, observed: Signs | None = None) -> Fit | None:
-    """Fit a category's sizes to an object of `extent` (w, d, h) [units], or None without statistics.
+def fit(extent: Floats, category: str, observed: Signs | None = None, unit: float = 0.0) -> Fit | None:
+    """Fit a category's sizes to an object of `extent` (w, d, h) [units], at `unit` metres per unit where that is known; None without statistics.
 
     With e = log extent and N(m, s^2) the logarithm of the sizes, log scale = sum((m - e) / s^2) / sum(1 / s^2).
     """
@@ -52,16 +66,16 @@ def fit(extent: Floats, category: str, observed: Signs | None = None) -> Fit | N
         return None
     location, spread = known.logarithmic()
     weight = 1 / spread**2
-    log_scale = float(((location - np.log(extent)) * weight).sum() / weight.sum())
-    return _at(extent, category, math.exp(log_scale), observed, fitted=True)
+    scale = unit or math.exp(float(((location - np.log(extent)) * weight).sum() / weight.sum()))
+    z = (np.log(extent) + math.log(scale) - location) / spread
+    likelihood = float(-0.5 * (z**2).sum() - np.log(spread).sum() - 1.5 * math.log(2 * math.pi))
+    return _fit_at(category, scale, z, likelihood, observed, fitted=not unit)
 
 
 def metric(extent: Floats, category: str, observed: Signs | None = None, unit: float = 1.0) -> Fit | None:
     """Return the fit of an object that is to scale already, of `unit` metres per unit, or None where it is no such thing."""
-    if sizes().get(category) is None or extent.min() <= 0 or extent[2] * unit > TALLEST:
-        return None
-    candidate = _at(extent, category, unit, observed, fitted=False)
-    return candidate if candidate.rms <= METRIC else None
+    candidate = fit(extent, category, observed, unit) if extent[2] * unit <= TALLEST else None
+    return candidate if candidate and candidate.rms <= METRIC else None
 
 
 def wide(extent: Floats, category: str, observed: Signs | None = None, own: Proportions | None = None) -> Fit | None:
@@ -89,17 +103,12 @@ def wide(extent: Floats, category: str, observed: Signs | None = None, own: Prop
     if off[1] > AGREE or float(np.abs(asked - tried[k]).max()) > ODD:
         return None
     scale = round(math.exp(float(tried[k])), 6)
-    likelihood = -float(cost[k] + np.log(spread).sum()) + math.log(known.count + COMMON)
-    if observed is not None:
-        likelihood += log_likelihood(observed, category, scale)
-    return Fit(category, scale, float(np.sqrt((z[k] ** 2).mean())), likelihood, fitted=True)
+    return _fit_at(category, scale, z[k], -float(cost[k] + np.log(spread).sum()), observed, fitted=True)
 
 
-def _at(extent: Floats, category: str, scale: float, observed: Signs | None, *, fitted: bool) -> Fit:
-    known = sizes()[category]
-    location, spread = known.logarithmic()
-    z = (np.log(extent) + math.log(scale) - location) / spread
-    likelihood = float(-0.5 * (z**2).sum() - np.log(spread).sum() - 1.5 * math.log(2 * math.pi)) + math.log(known.count + COMMON)
+def _fit_at(category: str, scale: float, z: Floats, likelihood: float, observed: Signs | None, *, fitted: bool) -> Fit:
+    """Return the fit of sides that are `z` (3,) deviations off; how common the category is and what is observed add to the likelihood."""
+    likelihood += math.log(sizes()[category].count + COMMON)
     if observed is not None:
         likelihood += log_likelihood(observed, category, scale)
     return Fit(category, round(scale, 6), float(np.sqrt((z**2).mean())), likelihood, fitted)
@@ -110,3 +119,33 @@ def best(fits: Iterable[Fit | None], *, rms: float, keep: int, margin: float) ->
     candidates = [f for f in fits if f is not None and f.rms <= rms]
     candidates.sort(key=lambda f: (-f.likelihood, f.category))
     return tuple(f for f in candidates[:keep] if f.likelihood >= candidates[0].likelihood - margin)
+
+
+def read_extent(source: Path, path: str) -> tuple[str, Floats] | None:
+    """Return model category and extent (w, d, h) [units] of an object as drawn, by its own small files; None where they do not say."""
+    try:
+        folder = Folder.at(source).sub(path)
+        box = read_json(folder, "bounding_box.json", MIB)
+        category = text_field(read_json(folder, "meta.json", MIB), "model_cat")
+    except (SourceError, OSError):
+        return None
+    low, high = (finite(box.get(key), 3) if isinstance(box, dict) else None for key in ("min", "max"))
+    if not category or low is None or high is None or not (high > low).all():
+        return None
+    return category, (high - low)[[0, 2, 1]]
+
+
+def spreads(objects: Iterable[tuple[str, Floats] | None]) -> Mapping[str, Proportions]:
+    """Return the proportions of every model category of which there are MANY objects."""
+    logs: dict[str, list[Floats]] = {}
+    for entry in objects:
+        if entry is not None:
+            log = np.log(entry[1])
+            logs.setdefault(entry[0], []).append(log - log.mean())
+    by_category = {}
+    for category, rows in logs.items():
+        if len(rows) >= MANY:
+            middle = np.median(rows, axis=0)
+            spread = NORMAL * np.median(np.abs(np.array(rows) - middle), axis=0)
+            by_category[category] = Proportions(middle, np.maximum(spread, LEAST))
+    return by_category

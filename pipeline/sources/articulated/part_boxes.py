@@ -1,20 +1,44 @@
-"""Boxes of parts in GAPartNet's axes: as annotated, or of the geometry where there is no annotation.
+"""Parts in GAPartNet's sense, their classes and boxes: as annotated, or of the geometry where there is no annotation.
 
 z looks outwards, the way in which a part sets off when it opens, or its carrier's front; x is a hinge's axis in the
 opening sense, the long side of a handle, else level; y = z x x.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.sources.articulated.part_classes import box_of
-from pipeline.sources.articulated.shape import ShapeBody, ShapeJoint, ShapePart
+from pipeline.sources.articulated.joint_rules import close_drawn_open
+from pipeline.sources.articulated.part_classes import box_of, shaped_class
+from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
 from pipeline.sources.meshes.mesh_solids import qhull_of
 
 Floats = NDArray[np.float64]
 FRONT = np.array([0.0, -1.0, 0.0])
+
+
+def complete_shape(shape: ArticulatedShape) -> ArticulatedShape:
+    """Return the shape, which stands upright with its front towards -y, with all that its form tells.
+
+    Every joint gets a class, doors and drawers are closed, and the movers and fixed handles without an annotation get boxes.
+    """
+    shape = shape.copied()
+    everything = np.concatenate([body.points() for body in shape.bodies])
+    low, whole = everything.min(axis=0), np.ptp(everything, axis=0)
+    middle = np.array([low[0] + whole[0] / 2, low[1] + whole[1] / 2, low[2]])
+    for number, joint in enumerate(shape.joints):
+        if joint.part_class == "other" and joint.inferred:
+            mine = shape.points_below(joint.child) - middle
+            part_class = shaped_class(joint.type, joint.axis, mine.min(axis=0), mine.max(axis=0), whole)
+            shape.joints[number] = replace(joint, part_class=part_class)
+    close_drawn_open(shape)
+    known = {("other", j.child) for j in shape.joints} | {(p.part_class, p.body) for p in shape.parts}
+    movers = [mover_part(shape.bodies[j.child], j) for j in shape.joints if (j.part_class, j.child) not in known]
+    fixed = [part for k, body in enumerate(shape.bodies) for part in fixed_parts(k, body, shape.joints)]
+    shape.parts += [*movers, *(part for part in fixed if (part.part_class, part.body) not in known)]
+    return shape
 
 
 def annotated_part(body: int, part_class: str, corners: Floats) -> ShapePart:

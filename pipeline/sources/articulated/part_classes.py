@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import PART_CLASSES
-from pipeline.sources.guarded import MIB, Folder, read_json
+from pipeline.sources.guarded import MIB, Folder, finite, read_json
 from pipeline.sources.reasons import SourceError
 
 Floats = NDArray[np.float64]
@@ -74,11 +74,8 @@ def _corners(value: Any) -> Floats | None:
 
     The order, in the part's own axes: (-,+,+) (+,+,+) (+,-,+) (-,-,+) and the same four with z -.
     """
-    try:
-        corners = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        return None
-    if corners.shape != (8, 3) or not np.isfinite(corners).all() or np.abs(corners).max() > 1e6:
+    corners = finite(value, 8, 3)
+    if corners is None:
         return None
     centre, axes, size = box_of(corners)
     away = np.abs(box_corners(centre, axes, size) - corners).max()

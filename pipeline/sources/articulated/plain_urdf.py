@@ -9,20 +9,23 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.metric_scale import UNITS
-from pipeline.sources.articulated.part_inference import complete_shape
-from pipeline.sources.articulated.shape import ArticulatedShape, below
+from pipeline.sources.articulated.part_boxes import complete_shape
+from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.articulated.shape_reader import Hints, ShapeReader
-from pipeline.sources.articulated.urdf import MAX_URDF, Urdf, parse_urdf
+from pipeline.sources.articulated.urdf import MAX_URDF, Shape, Urdf, UrdfJoint, parse_urdf
 from pipeline.sources.guarded import Folder
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
+Posed = TypeVar("Posed", Shape, UrdfJoint)
+UPRIGHT = {2: np.eye(3), 1: np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}  # rotations that bring an axis to z
 SNAP = 0.01  # [rad] an angle this near to a right one is one
 FURNITURE = "StorageFurniture"
 # Words of everyday language for PartNet's model categories; those for ours stand on their cards.
@@ -76,17 +79,11 @@ def orient_shape(shape: ArticulatedShape, categories: Sequence[str]) -> Articula
     """
     tried = []
     for up in (2, 1):
-        turned = shape.turned(_upright(up))
+        turned = shape.turned(UPRIGHT[up])
         turned = turned.turned(_about(_heading(turned)))
-        low, high = turned.bounds()
-        scores = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.metric(high - low, c, None, unit)) is not None]
+        scores = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.metric(turned.extent, c, None, unit))]
         tried.append((_level(turned) + (0.5 if up == 2 else 0.0) + 0.2 * max(scores, default=-20.0), turned))
     return complete_shape(max(tried, key=lambda t: t[0])[1])
-
-
-def _upright(up: int) -> Floats:
-    """Return the rotation that brings axis `up` to z: none, or y to z about x."""
-    return np.eye(3) if up == 2 else np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 def _about(heading: int) -> Floats:
@@ -98,11 +95,11 @@ def _about(heading: int) -> Floats:
 
 def _ways(shape: ArticulatedShape) -> list[Floats]:
     """Return the directions (3,) in which doors and drawers set off, the small ones such as knobs left out."""
-    low, high = shape.bounds()
+    largest = shape.extent.max()
     ways = []
     for joint in shape.joints:
-        points = np.concatenate([shape.bodies[k].points() for k in sorted(below(shape.joints, joint.child))])
-        if np.ptp(points, axis=0).max() < 0.15 * (high - low).max() or joint.type == "continuous":
+        points = shape.points_below(joint.child)
+        if np.ptp(points, axis=0).max() < 0.15 * largest or joint.type == "continuous":
             continue
         way = joint.axis if joint.type == "prismatic" else np.cross(joint.axis, points.mean(axis=0) - joint.origin)
         length = float(np.linalg.norm(way))
@@ -113,55 +110,40 @@ def _ways(shape: ArticulatedShape) -> list[Floats]:
 
 def _heading(shape: ArticulatedShape) -> int:
     """Return where the front is: 0 +x, 1 +y, 2 -x, 3 -y."""
-    flat = np.sum([way[:2] for way in _ways(shape)], axis=0) if _ways(shape) else np.zeros(2)
+    flat = np.sum([np.zeros(2), *(way[:2] for way in _ways(shape))], axis=0)
     if np.abs(flat).max() > 0.3:
-        return int(np.argmax([flat[0], flat[1], -flat[0], -flat[1]]))
-    low, high = shape.bounds()
-    wide = high - low
-    return 0 if wide[1] > 1.05 * wide[0] else 3
+        return int(np.argmax([*flat, *-flat]))
+    return 0 if shape.extent[1] > 1.05 * shape.extent[0] else 3
 
 
 def _level(shape: ArticulatedShape) -> float:
     """Return how well the joints suit their being upright: drawers and doors set off level, and hinges stand more often than not."""
-    score = 0.0
-    for way in _ways(shape):
-        score += 1.0 if abs(way[2]) < 0.3 else -1.0
-    for joint in shape.joints:
-        if joint.type == "revolute":
-            score += 0.3 if abs(joint.axis[2]) > 0.9 else 0.0
-    return score
+    standing = sum(joint.type == "revolute" and abs(joint.axis[2]) > 0.9 for joint in shape.joints)
+    return sum(1.0 if abs(float(way[2])) < 0.3 else -1.0 for way in _ways(shape)) + 0.3 * float(standing)
 
 
 def _snap_rotations(urdf: Urdf) -> tuple[Urdf, int]:
     """Return the URDF with rotations that are within SNAP of quarter turns made exact, and how many were off."""
     count = 0
 
-    def exact(T: Floats) -> Floats:
-        nonlocal count
-        near = np.round(T[:3, :3])
-        if np.abs(near @ near.T - np.eye(3)).max() > 1e-9:
-            return T
-        off = float(np.abs(T[:3, :3] - near).max())
-        if not 0 < off <= SNAP:
-            return T
-        count += off > 1e-4
-        T_snapped = T.copy()
-        T_snapped[:3, :3] = near
-        return T_snapped
+    def exact(things: tuple[Posed, ...]) -> tuple[Posed, ...]:
+        return tuple(replace(thing, T=snapped(thing.T)) for thing in things)
 
-    links = {
-        name: replace(
-            link, visuals=tuple(replace(s, T=exact(s.T)) for s in link.visuals), collisions=tuple(replace(s, T=exact(s.T)) for s in link.collisions)
-        )
-        for name, link in urdf.links.items()
-    }  # fmt: skip
-    joints = tuple(replace(j, T=exact(j.T)) for j in urdf.joints)
-    return replace(urdf, links=links, joints=joints), count
+    def snapped(pose: Floats) -> Floats:
+        nonlocal count
+        near = np.round(pose[:3, :3])
+        off = float(np.abs(pose[:3, :3] - near).max())
+        if np.abs(near @ near.T - np.eye(3)).max() > 1e-9 or not 0 < off <= SNAP:
+            return pose
+        count += off > 1e-4
+        right = pose.copy()
+        right[:3, :3] = near
+        return right
+
+    links = {k: replace(link, visuals=exact(link.visuals), collisions=exact(link.collisions)) for k, link in urdf.links.items()}
+    return replace(urdf, links=links, joints=exact(urdf.joints)), count
 
 
 def _words(urdf: Urdf) -> Mapping[str, str]:
     """Return {link: the words of its own name and its joint's}: "drawer_top" says what it is."""
-    words = {name: name for name in urdf.links}
-    for joint in urdf.joints:
-        words[joint.child] = f"{joint.child} {joint.name}"
-    return words
+    return {name: name for name in urdf.links} | {joint.child: f"{joint.child} {joint.name}" for joint in urdf.joints}

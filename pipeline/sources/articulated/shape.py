@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.entities.asset import JointType, Mesh
+from pipeline.geometry.kinematics import joint_motion
 from pipeline.sources.meshes.inertials import Inertial
 from pipeline.sources.meshes.visual_meshes import Palette
 
@@ -62,6 +63,10 @@ class ShapeJoint:
         """Return the joint under the rigid motion T (4, 4)."""
         return replace(self, axis=T[:3, :3] @ self.axis, origin=T[:3, :3] @ self.origin + T[:3, 3])
 
+    def opening(self) -> ShapeJoint:
+        """Return the joint with its axis turned so that the longer side of the range is positive: from closed, motion opens."""
+        return replace(self, axis=-self.axis, lower=-self.upper, upper=-self.lower) if -self.lower > self.upper else self
+
 
 @dataclass(frozen=True, slots=True)
 class ShapePart:
@@ -82,48 +87,71 @@ class ShapePart:
         return replace(self, centre=T[:3, :3] @ self.centre + T[:3, 3], axes=self.axes @ T[:3, :3].T)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class ArticulatedShape:
     """What a folder or file holds: bodies (0 is the base), joints parents first, parts, and the notes of repairs."""
 
     source: str
     source_id: str
     model_cat: str
-    bodies: tuple[ShapeBody, ...]
-    joints: tuple[ShapeJoint, ...]
-    parts: tuple[ShapePart, ...]
+    bodies: list[ShapeBody]
+    joints: list[ShapeJoint]
+    parts: list[ShapePart]
     palette: Palette
-    notes: tuple[Note, ...]
+    notes: list[Note]
 
     def bounds(self) -> tuple[Floats, Floats]:
         """Return the corners of the box at rest [units]."""
         points = np.concatenate([m.vertices for b in self.bodies for m in b.visuals])
         return points.min(axis=0).astype(np.float64), points.max(axis=0).astype(np.float64)
 
+    @property
+    def extent(self) -> Floats:
+        """Extents (3,) of that box [units]."""
+        low, high = self.bounds()
+        return high - low
+
     def turned(self, R: Floats) -> ArticulatedShape:
         """Return the shape turned by R (3, 3)."""
         T = np.eye(4)
         T[:3, :3] = R
-        return replace(
-            self,
-            bodies=tuple(b.moved(T) for b in self.bodies),
-            joints=tuple(j.moved(T) for j in self.joints),
-            parts=tuple(p.moved(T) for p in self.parts),
-        )
+        turned = self.copied()
+        turned.bodies = [body.moved(T) for body in self.bodies]
+        turned.joints = [joint.moved(T) for joint in self.joints]
+        turned.parts = [part.moved(T) for part in self.parts]
+        return turned
+
+    def copied(self) -> ArticulatedShape:
+        """Return a shape that can be changed without this one."""
+        return replace(self, bodies=list(self.bodies), joints=list(self.joints), parts=list(self.parts), notes=list(self.notes))
+
+    def below(self, body: int) -> list[int]:
+        """Return the bodies that move with `body`, itself included, in order."""
+        bodies = {body}
+        for joint in self.joints:
+            if joint.parent in bodies:
+                bodies.add(joint.child)
+        return sorted(bodies)
+
+    def points_below(self, body: int) -> Floats:
+        """Return the points (V, 3) of all that moves with `body`."""
+        return np.concatenate([self.bodies[k].points() for k in self.below(body)])
+
+    def shift(self, number: int, q: float) -> tuple[list[int], Floats]:
+        """Move what hangs on a joint by `q`, in place; its limits become relative to that. Return the bodies and their motion (4, 4)."""
+        joint = self.joints[number]
+        T, moved = joint_motion(joint, q), self.below(joint.child)
+        for k in moved:
+            self.bodies[k] = self.bodies[k].moved(T)
+        self.joints = [other.moved(T) if other.parent in moved else other for other in self.joints]
+        self.parts = [part.moved(T) if part.body in moved else part for part in self.parts]
+        self.joints[number] = replace(joint, lower=joint.lower - q, upper=joint.upper - q)
+        return moved, T
 
 
 def apply(T: Floats, points: Floats) -> Floats:
     """Return points (N, 3) under T (4, 4)."""
     return np.asarray(points @ T[:3, :3].T + T[:3, 3])
-
-
-def below(joints: Sequence[ShapeJoint], body: int) -> set[int]:
-    """Return the bodies that move with `body`, itself included; joints come parents first."""
-    bodies = {body}
-    for joint in joints:
-        if joint.parent in bodies:
-            bodies.add(joint.child)
-    return bodies
 
 
 def span_of(bodies: Sequence[ShapeBody]) -> float:

@@ -15,7 +15,7 @@ from pipeline.sources.articulated.mesh_files import MeshFiles
 from pipeline.sources.articulated.mobility_v2 import Mobility
 from pipeline.sources.articulated.part_boxes import annotated_part
 from pipeline.sources.articulated.part_classes import Annotation, fixed_class, named_class
-from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, ShapePart, below, span_of
+from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, span_of
 from pipeline.sources.articulated.urdf import Shape, Urdf, UrdfLink
 from pipeline.sources.guarded import Folder
 from pipeline.sources.meshes.near_boxes import FACES
@@ -24,7 +24,6 @@ from pipeline.sources.meshes.visual_meshes import Palette, visual
 from pipeline.sources.reasons import SourceError
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 LIKE = 0.03  # share of the object's diagonal within which the boxes of two sets of meshes of a body agree
 POST = 0.02  # the same for the thickness of the post that stands in for a frame that a door lacks
 
@@ -43,35 +42,47 @@ class ShapeReader:
     """Reads one URDF: `base` is the folder of its paths, `frame` (3, 3) turns its root's frame into ours."""
 
     def __init__(self, folder: Folder, base: str, urdf: Urdf, frame: Floats, hints: Hints, texture_limit: int) -> None:
-        self.urdf, self.hints, self.frame = urdf, hints, frame
-        self.base = base
+        self.urdf, self.hints, self.frame, self.base = urdf, hints, frame, base
+        self.moving: set[str] = set()  # links that hang on a moving joint of their own
         self.palette = Palette(folder, texture_limit)
         self.notes: list[Note] = []
         self.files = MeshFiles(folder, base, self.notes)
 
     def shape(self, source: str, source_id: str, model_cat: str) -> ArticulatedShape:
-        """Return the shape at rest, with the parts that are annotated (`part_inference` finds the others).
+        """Return the shape at rest, with the parts that are annotated (`complete_shape` finds the others).
 
         Raises SourceError `no_base`, or what a mesh file raises.
         """
         T = self._transforms(self.urdf)
         body_of, bodies, joints = self._tree(T)
         for name, link in self.urdf.links.items():
-            self._fill(bodies[body_of[name]], link, T[name], moves=self._moves(name, body_of))
+            body = bodies[body_of[name]]
+            body.visuals += self._visuals(link, T[name], len(body.visuals))
+            if link.visuals or link.collisions:
+                body.inertials.append(link.inertial and link.inertial.moved(T[name]))
+            for entry in link.collisions:
+                body.collisions += [(points, group.faces) for group, _, points in self.files.geometry(entry, T[name])]
         self._borrow_looks(bodies, body_of)
-        words = {body_of[name]: word for name, word in self.hints.named.items() if name in body_of}
-        joints = joint_rules.without_empty(bodies, joints, words, self.notes)
-        bodies, joints, index = self._drop_unmoved(bodies, joints)
-        joints = self._ensure_base(bodies, joints, source_id)
-        parts = self._annotated_parts({name: index[body] for name, body in body_of.items() if body in index})
-        joint_rules.shift_to_rest(bodies, joints, parts, self.notes)
-        for body in bodies:
+        shape = ArticulatedShape(source, source_id, model_cat, bodies, joints, [], self.palette, self.notes)
+        joint_rules.drop_empty(shape, {body_of[name]: word for name, word in self.hints.named.items() if name in body_of})
+        used = [0, *(j.child for j in shape.joints)]  # the others move with nothing
+        index = {old: new for new, old in enumerate(used)}
+        shape.bodies = [bodies[k] for k in used]
+        shape.joints = [replace(j, parent=index[j.parent], child=index[j.child]) for j in shape.joints]
+        self._ensure_base(shape)
+        shape.parts = [
+            annotated_part(index[body_of[name]], note.part_class, note.corners @ self.frame.T)
+            for name, note in self.hints.annotated.items()
+            if note.corners is not None and body_of.get(name) in index
+        ]
+        joint_rules.shift_to_rest(shape)
+        for body in shape.bodies:
             if not body.collisions:
                 body.collisions = [(m.vertices.astype(np.float64), m.faces.astype(np.int64)) for m in body.visuals]
-        notes = [*self.notes, *(("model", reason, detail) for reason, detail in self.palette.notes)]
-        return ArticulatedShape(
-            source, source_id, model_cat, tuple(bodies), tuple(_assign_names(joints)), tuple(parts), self.palette, tuple(notes)
-        )  # fmt: skip
+        names = distinct_names(slug(j.name) for j in shape.joints)
+        shape.joints = [replace(j, name=name) for j, name in zip(shape.joints, names, strict=True)]
+        shape.notes += (("model", reason, detail) for reason, detail in self.palette.notes)
+        return shape
 
     def _transforms(self, urdf: Urdf) -> dict[str, Floats]:
         """Return the pose (4, 4) of every link with all joints at 0, in our orientation."""
@@ -92,11 +103,10 @@ class ShapeReader:
                 body_of[joint.child] = body_of[joint.parent]
                 continue
             kind, lower, upper = limits
-            body_of[joint.child] = len(bodies)
-            pose = T[joint.child]
+            self.moving.add(joint.child)
+            body_of[joint.child] = child = len(bodies)
             part, inferred = self._part_class(joint.child, kind)
-            axis, origin = pose[:3, :3] @ joint.axis, pose[:3, 3].copy()
-            child = len(bodies)
+            axis, origin = T[joint.child][:3, :3] @ joint.axis, T[joint.child][:3, 3].copy()
             joints.append(ShapeJoint(joint.name, kind, body_of[joint.parent], child, axis, origin, lower, upper, part, inferred))
             bodies.append(ShapeBody(slug(joint.child)))
         return body_of, bodies, joints
@@ -108,23 +118,12 @@ class ShapeReader:
         known = self.hints.mobility.get(link)
         return named_class(kind, self.hints.named.get(link) or (known.name if known else "")) or "other", True
 
-    def _moves(self, name: str, body_of: Mapping[str, int]) -> bool:
-        """Whether the link hangs on a moving joint of its own."""
-        return name != self.urdf.root and all(body_of[j.parent] != body_of[name] for j in self.urdf.joints if j.child == name)
-
-    def _fill(self, body: ShapeBody, link: UrdfLink, T: Floats, *, moves: bool) -> None:
-        body.visuals += self._visuals(link, T, len(body.visuals), moves=moves)
-        if link.visuals or link.collisions:
-            body.inertials.append(link.inertial and link.inertial.moved(T))
-        for shape in link.collisions:
-            body.collisions += [(points, group.faces) for group, _, points in self.files.geometry(shape, T)]
-
-    def _visuals(self, link: UrdfLink, T: Floats, start: int, *, moves: bool) -> list[Mesh]:
+    def _visuals(self, link: UrdfLink, T: Floats, start: int) -> list[Mesh]:
         meshes: list[Mesh] = []
         for shape in link.visuals:
             for group, file, points in self.files.geometry(shape, T):
                 extent = np.ptp(points[np.unique(group.faces)], axis=0)
-                part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=moves)
+                part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=link.name in self.moving)
                 material = self._material(shape, file, group)
                 mesh = visual(group, file, points, f"mesh_{start + len(meshes):03d}", material, part)
                 if mesh:
@@ -155,7 +154,7 @@ class ShapeReader:
         borrowed = [ShapeBody(body.name) for body in bodies]
         for name, link in looks.links.items():
             body = borrowed[owner[name]]
-            body.visuals += self._visuals(link, T[name], len(body.visuals), moves=self._moves(name, body_of) if name in body_of else False)
+            body.visuals += self._visuals(link, T[name], len(body.visuals))
         span = span_of(bodies)
         if all(_alike(a, b, span) for a, b in zip(bodies, borrowed, strict=True)):
             for body, other in zip(bodies, borrowed, strict=True):
@@ -163,43 +162,23 @@ class ShapeReader:
         else:
             self.notes.append(("model", "looks_differ", "the meshes of the URDF for looks are not where the annotated ones are"))
 
-    def _drop_unmoved(self, bodies: list[ShapeBody], joints: list[ShapeJoint]) -> tuple[list[ShapeBody], list[ShapeJoint], dict[int, int]]:
-        """Return bodies and joints without the bodies that no joint moves, and the new index of each old one."""
-        used = [0, *(j.child for j in joints)]
-        index = {old: new for new, old in enumerate(used)}
-        return [bodies[k] for k in used], [replace(j, parent=index[j.parent], child=index[j.child]) for j in joints], index
-
-    def _ensure_base(self, bodies: list[ShapeBody], joints: list[ShapeJoint], source_id: str) -> list[ShapeJoint]:
+    def _ensure_base(self, shape: ArticulatedShape) -> None:
         """See that every body has visuals, and the base something to be seen at all."""
-        for body in bodies:
+        for body in shape.bodies:
             if not body.visuals and body.collisions:
                 material = self.palette.add((0.7, 0.7, 0.7), 1.0, None)
                 body.visuals = [
                     Mesh(f"mesh_{k:03d}", v.astype(np.float32), f.astype(np.int32), material) for k, (v, f) in enumerate(body.collisions)
                 ]
                 self.notes.append(("model", "looks_from_colliders", body.name))
-        if bodies[0].visuals:
-            return joints
-        hinged = [j for j in joints if j.parent == 0 and j.type == "revolute"]
-        if (
-            len(hinged) != 1
-            or any(j.parent == 0 for j in joints if j is not hinged[0])
-            or any(r == "missing_mesh" for _, r, _ in self.notes)
-        ):
-            raise SourceError("no_base", source_id, "its root body has no geometry")
-        vertices, faces = _post(bodies, joints, hinged[0])
-        bodies[0].visuals = [
-            Mesh("post", vertices.astype(np.float32), faces.astype(np.int32), self.palette.add((0.6, 0.6, 0.6), 1.0, None))
-        ]
-        self.notes.append(("model", "base_made", f"a post along the hinge {hinged[0].name}"))
-        return joints
-
-    def _annotated_parts(self, body_of: Mapping[str, int]) -> list[ShapePart]:
-        return [
-            annotated_part(body_of[name], note.part_class, note.corners @ self.frame.T)
-            for name, note in self.hints.annotated.items()
-            if note.corners is not None and name in body_of
-        ]
+        if shape.bodies[0].visuals:
+            return
+        carried = [j for j in shape.joints if j.parent == 0]
+        if [j.type for j in carried] != ["revolute"] or any(reason == "missing_mesh" for _, reason, _ in self.notes):
+            raise SourceError("no_base", shape.source_id, "its root body has no geometry")
+        material = self.palette.add((0.6, 0.6, 0.6), 1.0, None)
+        shape.bodies[0].visuals = [Mesh("post", _post(shape, carried[0]).astype(np.float32), FACES.astype(np.int32), material)]
+        self.notes.append(("model", "base_made", f"a post along the hinge {carried[0].name}"))
 
 
 def _alike(body: ShapeBody, other: ShapeBody, span: float) -> bool:
@@ -210,9 +189,9 @@ def _alike(body: ShapeBody, other: ShapeBody, span: float) -> bool:
     return float(away.max()) <= LIKE * span
 
 
-def _post(bodies: list[ShapeBody], joints: list[ShapeJoint], hinge: ShapeJoint) -> tuple[Floats, Ints]:
-    """Return vertices (8, 3) and faces (12, 3) of a square post along a hinge, on the far side of it from its leaf."""
-    points = np.concatenate([bodies[k].points() for k in sorted(below(joints, hinge.child))])
+def _post(shape: ArticulatedShape, hinge: ShapeJoint) -> Floats:
+    """Return the corners (8, 3) of a square post along a hinge, on the far side of it from its leaf."""
+    points = shape.points_below(hinge.child)
     along = (points - hinge.origin) @ hinge.axis
     thick = POST * float(np.linalg.norm(np.ptp(points, axis=0)))
     out = hinge.origin - points.mean(axis=0)
@@ -226,12 +205,7 @@ def _post(bodies: list[ShapeBody], joints: list[ShapeJoint], hinge: ShapeJoint) 
         hinge.origin + hinge.axis * a + across * (max(reach, 0.0) + b * thick) + side * (c - 0.5) * thick
         for a in (along.min(), along.max()) for b in (0, 1) for c in (0, 1)
     ]  # fmt: skip
-    return np.array(corners), FACES
-
-
-def _assign_names(joints: list[ShapeJoint]) -> list[ShapeJoint]:
-    """Give joints ids that are unique in the asset and match [a-z][a-z0-9_]*."""
-    return [replace(j, name=name) for j, name in zip(joints, distinct_names(slug(j.name) for j in joints), strict=True)]
+    return np.array(corners)
 
 
 def distinct_names(names: Iterable[str]) -> list[str]:

@@ -1,34 +1,38 @@
 """PartNet-Mobility, GAPartNet and other people's URDFs as a source of models: a folder of objects, however deep."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+import os
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from pipeline import taxonomy
-from pipeline.sources.articulated import proportions
+from pipeline.manifest import sha256
 from pipeline.sources.articulated.assets import assets
-from pipeline.sources.articulated.objects import Found, objects_in
+from pipeline.sources.articulated.metric_scale import read_extent, spreads
 from pipeline.sources.articulated.partnet import URDFS, read_shape
 from pipeline.sources.articulated.plain_urdf import candidates, orient_shape, read_plain_urdf
-from pipeline.sources.articulated.proportions import Proportions
 from pipeline.sources.batch import Batch
-from pipeline.sources.folders import require_folders
 from pipeline.sources.guarded import Folder
-from pipeline.sources.library_rows import LibraryRows, Scale
-from pipeline.sources.reasons import reject
-from pipeline.sources.settings import ModelLimits, PreprocessSettings
-from pipeline.sources.source import Listing, Reading, Source
+from pipeline.sources.rows import LibraryRows, Scale
+from pipeline.sources.settings import PreprocessSettings
+from pipeline.sources.source import Listing, Reading, Source, Task, require_folders
+
+DEPTH = 4  # folders below the root in which objects are looked for
+OWN_FILES = frozenset({"meta.json", *(name for name, _ in URDFS)})  # a folder with one of these is an object
 
 
 @dataclass(frozen=True, slots=True)
-class ObjectTask:
-    """What every object is read with; `spreads`: by model category, what its objects' proportions are."""
+class Found:
+    """An object of an articulated source: its folder or URDF relative to the source, and the stem of its assets' ids."""
 
-    source: Path
-    out: Path
-    limits: ModelLimits
-    licence: str
-    spreads: Mapping[str, Proportions] = field(default_factory=dict)
+    path: str
+    stem: str
+
+    @property
+    def source_id(self) -> str:
+        """Return the id in the source: the folder's name, or the URDF's without its suffix."""
+        return self.path.rsplit("/", 1)[-1].removesuffix(".urdf")
 
 
 class Articulated(Source):
@@ -41,7 +45,7 @@ class Articulated(Source):
 
     def recognise(self, folder: Path) -> Path | None:
         """Return the folder that holds all objects; of a folder that is one of a set, the set is meant."""
-        base = folder.parent if _is_object(folder) else folder
+        base = folder.parent if any((folder / name).is_file() for name in OWN_FILES) else folder
         names = [entry.path for entry in objects_in(base)]
         if not names:
             return None
@@ -62,41 +66,53 @@ class Articulated(Source):
 
     def models(self, listing: Listing, reading: Reading) -> Iterator[LibraryRows]:
         """Read the proportions of all objects, then the objects."""
-        drawn = Batch("extent", proportions.read_extent, listing.root, [entry.path for entry in listing.items], lambda *_: None)
-        task = ObjectTask(
-            listing.root,
-            reading.assets,
-            reading.settings.models,
-            reading.licence,
-            proportions.spreads(reading.each(drawn)),
+        drawn = Batch("extent", read_extent, listing.root, [entry.path for entry in listing.items], lambda *_: None)
+        task = Task(listing.root, reading, spreads(reading.each(drawn)))
+        yield from reading.each(
+            Batch("object", read_object, task, listing.items, lambda entry, *why: LibraryRows.refused(entry.source_id, *why))
         )
-        yield from reading.each(Batch("object", read_object, task, listing.items, _no_object))
 
 
-def read_object(task: ObjectTask, entry: Found) -> LibraryRows:
-    """Read one articulated object and write an asset file for each category that it serves."""
-    rows = LibraryRows()
+def objects_in(source: Path) -> list[Found]:
+    """Return the objects below `source`, sorted: folders of PartNet-Mobility or GAPartNet, and URDFs by themselves.
 
-    def work() -> None:
-        kinds, root = taxonomy.load(), Folder.at(task.source)
-        if entry.path.lower().endswith(".urdf"):
-            categories = candidates(entry.path, kinds)
-            shape = orient_shape(read_plain_urdf(root, entry.path, entry.source_id, task.limits.max_texture), categories)
-        else:
-            models = sorted({name for kind in kinds.categories.values() for name in kind.names.partnet})
-            shape = read_shape(root.sub(entry.path), entry.source_id, task.limits.max_texture, models)
-            categories = kinds.from_partnet(shape.model_cat) or ((shape.model_cat,) if shape.model_cat in kinds.categories else ())
-        own = task.spreads.get(shape.model_cat)
-        for asset, fit, rejects in assets(shape, entry.stem, categories, kinds, task.limits, task.licence, own):
-            rows.keep(task.out, asset, Scale(fit.scale, fit.category if fit.fitted else "file", fit.rms))
-            rows.rejects += rejects
+    A link to a folder elsewhere is among them, to be refused; one to a folder within would only name it twice. Objects that share a stem
+    once it is written in [a-z0-9_] get a digest of their path behind it.
+    """
+    root = source.resolve()
+    paths = []
+    for base, folders, files in os.walk(root):
+        folders.sort()
+        here = Path(base).relative_to(root)
+        links = [f for f in folders if (Path(base) / f).is_symlink() and not (Path(base) / f).resolve().is_relative_to(root)]
+        paths += [(here / link).as_posix() for link in links]
+        if not OWN_FILES.isdisjoint(files):
+            paths.append(here.as_posix())
+            folders.clear()
+            continue
+        paths += [(here / file).as_posix() for file in sorted(files) if file.lower().endswith(".urdf")]
+        if len(here.parts) >= DEPTH:
+            folders.clear()
+    plain = ["".join(c if c.isalnum() and c.isascii() else "_" for c in Found(path, "").source_id.lower())[:60] for path in paths]
+    count = Counter(plain)
+    return [
+        Found(path, stem if count[stem] == 1 and stem.strip("_") else f"{stem.strip('_')}_{sha256(path.encode())[:8]}".strip("_"))
+        for path, stem in zip(paths, plain, strict=True)
+    ]
 
-    return rows.guard(entry.source_id, work)
 
-
-def _no_object(entry: Found, reason: str, detail: str) -> LibraryRows:
-    return LibraryRows(rejects=[reject("model", entry.source_id, reason, detail)])
-
-
-def _is_object(folder: Path) -> bool:
-    return (folder / "meta.json").is_file() or any((folder / name).is_file() for name, _ in URDFS)
+def read_object(task: Task, entry: Found) -> LibraryRows:
+    """Read one articulated object and write an asset file for each category that it serves; `known` of the task are proportions by category."""
+    rows, kinds, root, limits = LibraryRows(), taxonomy.load(), Folder.at(task.root), task.reading.settings.models
+    if entry.path.lower().endswith(".urdf"):
+        categories = candidates(entry.path, kinds)
+        shape = orient_shape(read_plain_urdf(root, entry.path, entry.source_id, limits.max_texture), categories)
+    else:
+        models = sorted({name for kind in kinds.categories.values() for name in kind.names.partnet})
+        shape = read_shape(root.sub(entry.path), entry.source_id, limits.max_texture, models)
+        categories = kinds.from_partnet(shape.model_cat) or ((shape.model_cat,) if shape.model_cat in kinds.categories else ())
+    own = task.known.get(shape.model_cat)
+    for asset, fit, rejects in assets(shape, entry.stem, categories, kinds, limits, task.reading.licence, own):
+        rows.keep(task.reading.assets, asset, Scale(fit.scale, fit.category if fit.fitted else "file", fit.rms))
+        rows.rejects += rejects
+    return rows

@@ -6,6 +6,7 @@ limit, several visuals of one name, extra attributes and elements, rpy that is n
 
 import math
 import re
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +23,11 @@ MAX_URDF = 8 << 20  # bytes
 MAX_ELEMENTS = 100_000
 MAX_LINKS = 1000
 MAX_SHAPES = 5000
+PRIMITIVES: dict[str, dict[str, tuple[float, ...]]] = {  # their sizes where the file does not say
+    "box": {"size": (1.0, 1.0, 1.0)},
+    "sphere": {"radius": (0.5,)},
+    "cylinder": {"radius": (0.5,), "length": (1.0,)},
+}
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -72,7 +78,11 @@ class Urdf:
 
 def parse_urdf(data: bytes, where: str) -> Urdf:
     """Parse a URDF. Raises SourceError `not_urdf`, `bad_number` or `too_large`, naming `where`."""
-    root = _tree(data, where)
+    if not data.strip():
+        raise SourceError("not_urdf", where, "is empty")
+    root = xml_root(data, "not_urdf", where, MAX_ELEMENTS)
+    if root.tag != "robot":
+        raise SourceError("not_urdf", where, f"its root is <{str(root.tag)[:40]}>, not <robot>")
     colors = {m.get("name", ""): _color(m) for m in root.findall("material")}
     links: dict[str, UrdfLink] = {}
     for element in root.findall("link"):
@@ -87,15 +97,6 @@ def parse_urdf(data: bytes, where: str) -> Urdf:
     return _build_urdf(links, joints, where)
 
 
-def _tree(data: bytes, where: str) -> Any:
-    if not data.strip():
-        raise SourceError("not_urdf", where, "is empty")
-    root = xml_root(data, "not_urdf", where, MAX_ELEMENTS)
-    if root.tag != "robot":
-        raise SourceError("not_urdf", where, f"its root is <{str(root.tag)[:40]}>, not <robot>")
-    return root
-
-
 def _build_urdf(links: dict[str, UrdfLink], joints: list[UrdfJoint], where: str) -> Urdf:
     children: dict[str, UrdfJoint] = {}
     for joint in joints:
@@ -107,36 +108,28 @@ def _build_urdf(links: dict[str, UrdfLink], joints: list[UrdfJoint], where: str)
     roots = [name for name in links if name not in children]
     if len(roots) != 1:
         raise SourceError("not_urdf", where, f"has {len(roots)} root links, not one tree")
-    below: dict[str, list[UrdfJoint]] = {}
+    below: dict[str, list[UrdfJoint]] = defaultdict(list)
     for joint in joints:
-        below.setdefault(joint.parent, []).append(joint)
-    ordered: list[UrdfJoint] = []
-    queue = [roots[0]]
-    while queue:
-        for joint in below.get(queue.pop(0), []):
-            ordered.append(joint)
-            queue.append(joint.child)
+        below[joint.parent].append(joint)
+    ordered = list(below[roots[0]])
+    for joint in ordered:  # which grows: breadth first
+        ordered += below[joint.child]
     if len(ordered) != len(joints):
         raise SourceError("not_urdf", where, "has a loop of joints")
     return Urdf(links, tuple(ordered), roots[0])
 
 
 def _joint(element: Any, where: str) -> UrdfJoint:
-    ends = {k: e.get("link", "") if (e := element.find(k)) is not None else "" for k in ("parent", "child")}
-    axis_element = element.find("axis")
-    axis = _vector(axis_element.get("xyz") if axis_element is not None else None, (1.0, 0.0, 0.0), where)
+    parent, child = (_text(element, end, "link") or "" for end in ("parent", "child"))
+    axis = _vector(_text(element, "axis", "xyz"), (1.0, 0.0, 0.0), where)
     length = float(np.linalg.norm(axis))
     axis = axis / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
-    limit = element.find("limit")
-    limits = None
-    if limit is not None and (limit.get("lower") is not None or limit.get("upper") is not None):
-        lower, upper = (_vector(limit.get(k), (0.0,), where)[0] for k in ("lower", "upper"))
-        limits = (float(lower), float(upper))
-    name = element.get("name") or f"{ends['parent']}_{ends['child']}"
-    mimic = element.find("mimic")
-    follows = mimic.get("joint") or "another" if mimic is not None else ""
+    ends = [_text(element, "limit", end) for end in ("lower", "upper")]
+    lower, upper = (float(_vector(end, (0.0,), where)[0]) for end in ends)
+    limits = None if ends == [None, None] else (lower, upper)
+    follows = "" if element.find("mimic") is None else _text(element, "mimic", "joint") or "another"
     kind = (element.get("type") or "fixed").strip()
-    return UrdfJoint(name, kind, ends["parent"], ends["child"], _origin(element, where), axis, limits, follows)
+    return UrdfJoint(element.get("name") or f"{parent}_{child}", kind, parent, child, _origin(element, where), axis, limits, follows)
 
 
 def _inertial(element: Any, where: str) -> Inertial | None:
@@ -144,10 +137,9 @@ def _inertial(element: Any, where: str) -> Inertial | None:
     inertial = element.find("inertial")
     if inertial is None:
         return None
-    mass, moments = inertial.find("mass"), inertial.find("inertia")
     try:
-        (kg,) = _vector(mass.get("value") if mass is not None else None, (math.nan,), where)
-        values = [_vector(moments.get(k) if moments is not None else None, (math.nan,), where, 1e12)[0] for k in MOMENTS]
+        (kg,) = _vector(_text(inertial, "mass", "value"), (math.nan,), where)
+        values = [_vector(_text(inertial, "inertia", k), (math.nan,), where, 1e12)[0] for k in MOMENTS]
         T = _origin(inertial, where)
     except SourceError:
         kg, values, T = np.float64(math.nan), [math.nan] * 6, np.eye(4)
@@ -163,8 +155,9 @@ def _shape(element: Any, colors: dict[str, Any], where: str) -> Shape:
         if child.tag == "mesh":
             mesh = (child.get("filename") or "").strip()
             scale = _vector(child.get("scale"), (1.0, 1.0, 1.0), where)
-        elif child.tag in {"box", "sphere", "cylinder"}:
-            primitive = (child.tag, _primitive(child, where))
+        elif child.tag in PRIMITIVES:
+            sizes = PRIMITIVES[child.tag].items()
+            primitive = (child.tag, tuple(float(v) for k, usual in sizes for v in _vector(child.get(k), usual, where)))
     material = element.find("material")
     color = None
     if material is not None:
@@ -172,22 +165,9 @@ def _shape(element: Any, colors: dict[str, Any], where: str) -> Shape:
     return Shape(element.get("name") or "", _origin(element, where), mesh, primitive, scale, color)
 
 
-def _primitive(element: Any, where: str) -> tuple[float, ...]:
-    if element.tag == "box":
-        values = _vector(element.get("size"), (1.0, 1.0, 1.0), where)
-    elif element.tag == "sphere":
-        values = _vector(element.get("radius"), (0.5,), where)
-    else:
-        values = np.concatenate([_vector(element.get(k), (d,), where) for k, d in (("radius", 0.5), ("length", 1.0))])
-    return tuple(float(v) for v in values)
-
-
 def _color(element: Any) -> tuple[float, float, float, float] | None:
-    color = element.find("color")
-    if color is None:
-        return None
     try:
-        r, g, b, a = (min(max(float(v), 0.0), 1.0) for v in re.split(r"[\s,]+", (color.get("rgba") or "").strip()))
+        r, g, b, a = (min(max(float(v), 0.0), 1.0) for v in re.split(r"[\s,]+", (_text(element, "color", "rgba") or "").strip()))
     except ValueError:
         return None
     return (r, g, b, a) if all(map(math.isfinite, (r, g, b, a))) else None
@@ -196,11 +176,10 @@ def _color(element: Any) -> tuple[float, float, float, float] | None:
 def _origin(element: Any, where: str) -> Floats:
     """Return the 4x4 transform of <origin xyz rpy>: rotation Rz(y) Ry(p) Rx(r)."""
     T = np.eye(4)
-    origin = element.find("origin")
-    if origin is None:
+    if element.find("origin") is None:
         return T
-    T[:3, 3] = _vector(origin.get("xyz"), (0.0, 0.0, 0.0), where)
-    r, p, y = _vector(origin.get("rpy"), (0.0, 0.0, 0.0), where)
+    T[:3, 3] = _vector(_text(element, "origin", "xyz"), (0.0, 0.0, 0.0), where)
+    r, p, y = _vector(_text(element, "origin", "rpy"), (0.0, 0.0, 0.0), where)
     (cr, cp, cy), (sr, sp, sy) = np.cos([r, p, y]), np.sin([r, p, y])
     T[:3, :3] = [
         [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
@@ -208,6 +187,12 @@ def _origin(element: Any, where: str) -> Floats:
         [-sp, cp * sr, cp * cr],
     ]
     return T
+
+
+def _text(element: Any, tag: str, key: str) -> str | None:
+    """Return an attribute of an element's child, None where either is missing."""
+    child = element.find(tag)
+    return None if child is None else child.get(key)
 
 
 def _vector(text: str | None, default: tuple[float, ...], where: str, most: float = 1e6) -> Floats:

@@ -10,8 +10,8 @@ import json
 import zipfile
 import zlib
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,10 @@ MASK = 256  # pixels a side
 MAX_FILE, MAX_UNPACKED = 16 << 20, 64 << 20  # bytes
 MAX_OBJECTS = 500
 TEXTS = ("scene_id", "scene_uid", "scene_type", "json_path")
+NAMES = {  # of arrays that are called otherwise here
+    "layout": "room_layout", "vertices": "floor_plan_vertices", "faces": "floor_plan_faces", "centroid": "floor_plan_centroid",
+    "classes": "class_labels",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,24 +61,10 @@ class CachedRoom:
 
 def write_room(folder: Path, room: CachedRoom) -> None:
     """Write boxes.npz; the bytes depend on nothing but the room, and reading them needs no pickle."""
+    held = ((NAMES.get(field.name, field.name), getattr(room, field.name)) for field in fields(room))
     out = io.BytesIO()
-    np.savez_compressed(
-        out,
-        uids=np.array(room.uids, dtype=np.str_),
-        jids=np.array(room.jids, dtype=np.str_),
-        scene_id=np.array(room.scene_id),
-        scene_uid=np.array(room.scene_uid),
-        scene_type=np.array(room.scene_type),
-        json_path=np.array(room.json_path),
-        room_layout=room.layout,
-        floor_plan_vertices=room.vertices,
-        floor_plan_faces=room.faces,
-        floor_plan_centroid=room.centroid,
-        class_labels=room.classes,
-        translations=room.translations,
-        sizes=room.sizes,
-        angles=room.angles,
-    )
+    arrays: dict[str, Any] = {k: v if isinstance(v, np.ndarray) else np.array(v, dtype=np.str_) for k, v in held}
+    np.savez_compressed(out, **arrays)
     write_bytes(folder / BOXES, out.getvalue())
 
 
@@ -82,71 +72,64 @@ def read_room(folder: Folder, file: str) -> CachedRoom:
     """Read boxes.npz. Raises SourceError `bad_boxes` for anything that is not what `CachedRoom` says."""
     arrays = _arrays(folder.read(file, MAX_FILE), file)
 
+    def refuse(detail: str) -> SourceError:
+        return SourceError("bad_boxes", file, detail)
+
+    def array(name: str, kinds: str, *shape: int | None) -> NDArray[Any]:
+        name = NAMES.get(name, name)
+        if name not in arrays:
+            raise refuse(f"lacks {name}")
+        held = arrays[name]
+        fits = held.ndim == len(shape) and all(n in {None, m} for n, m in zip(shape, held.shape, strict=True))
+        if held.dtype.kind not in kinds or not (fits or not shape):
+            raise refuse(f"{name} has type {held.dtype} and shape {held.shape}")
+        return held
+
     def numbers(name: str, *shape: int | None) -> Floats:
-        array = _array(arrays, name, file)
-        if (
-            array.dtype.kind not in "fiu"
-            or array.ndim != len(shape)
-            or any(n not in {None, m} for n, m in zip(shape, array.shape, strict=True))
-        ):
-            raise SourceError("bad_boxes", file, f"{name} has type {array.dtype} and shape {array.shape}")
-        floats = array.astype(np.float32)
+        floats = array(name, "fiu", *shape).astype(np.float32)
         if not np.isfinite(floats).all():
-            raise SourceError("bad_boxes", file, f"{name} holds a number that is not finite")
+            raise refuse(f"{NAMES.get(name, name)} holds a number that is not finite")
         return floats
 
     def words(name: str) -> tuple[str, ...]:
-        array = _array(arrays, name, file)
-        if array.dtype.kind != "U" or array.ndim > 1:
-            raise SourceError("bad_boxes", file, f"{name} has type {array.dtype}, not text")
-        return tuple(map(str, array.reshape(-1)))
+        held = array(name, "U")
+        if held.ndim > 1:
+            raise refuse(f"{name} has shape {held.shape}")
+        return tuple(map(str, held.reshape(-1)))
 
     count = len(numbers("translations", None, 3))
     if count > MAX_OBJECTS:
-        raise SourceError("bad_boxes", file, f"{count} objects in a room")
-    texts = {name: "".join(words(name)[:1]) for name in TEXTS}
-    layout = numbers("room_layout", *([None] * _array(arrays, "room_layout", file).ndim))
-    faces, vertices = numbers("floor_plan_faces", None, 3), numbers("floor_plan_vertices", None, 3)
+        raise refuse(f"{count} objects in a room")
+    faces, vertices = numbers("faces", None, 3), numbers("vertices", None, 3)
     if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
-        raise SourceError("bad_boxes", file, "floor_plan_faces index vertices that are not there")
-    room = CachedRoom(
-        words("uids"), words("jids"), **texts, layout=layout.astype(np.uint8), vertices=vertices, faces=faces.astype(np.int64),
-        centroid=numbers("floor_plan_centroid", 3), classes=numbers("class_labels", count, None), translations=numbers("translations", count, 3),
+        raise refuse("floor_plan_faces index vertices that are not there")
+    uids, jids = words("uids"), words("jids")
+    if not (len(uids) == len(jids) == count):
+        raise refuse(f"{len(uids)} uids and {len(jids)} jids for {count} objects")
+    texts = {name: "".join(words(name)[:1]) for name in TEXTS}
+    return CachedRoom(
+        uids, jids, **texts, layout=numbers("layout").astype(np.uint8), vertices=vertices, faces=faces.astype(np.int64),
+        centroid=numbers("centroid", 3), classes=numbers("classes", count, None), translations=numbers("translations", count, 3),
         sizes=numbers("sizes", count, 3), angles=numbers("angles", count, 1),
     )  # fmt: skip
-    if not (len(room.uids) == len(room.jids) == count):
-        raise SourceError("bad_boxes", file, f"{len(room.uids)} uids and {len(room.jids)} jids for {count} objects")
-    return room
 
 
 def _arrays(data: bytes, file: str) -> dict[str, NDArray[Any]]:
+    arrays: dict[str, NDArray[Any]] = {}
+    name = ""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             unpacked = sum(entry.file_size for entry in archive.infolist())
         if unpacked > MAX_UNPACKED:
             raise SourceError("bad_boxes", file, f"unpacks to {unpacked} bytes")
         with np.load(io.BytesIO(data), allow_pickle=False) as archive:
-            return {name: _load_array(archive, name, file) for name in archive.files}
+            for name in archive.files:
+                arrays[name] = archive[name]
     except (zipfile.BadZipFile, zlib.error, OSError, ValueError, KeyError, EOFError, NotImplementedError) as error:
-        raise SourceError("bad_boxes", file, f"is no readable npz file ({str(error)[:60]})") from error
-
-
-def _load_array(archive: Any, name: str, file: str) -> NDArray[Any]:
-    try:
-        array: NDArray[Any] = archive[name]
-    except ValueError as error:
-        if "allow_pickle" not in str(error):
-            raise
-        raise SourceError(
-            "bad_boxes", file, f"{name} needs pickle, which is never loaded; write it again as an array of text or numbers"
-        ) from error
-    return array
-
-
-def _array(arrays: dict[str, NDArray[Any]], name: str, file: str) -> NDArray[Any]:
-    if name not in arrays:
-        raise SourceError("bad_boxes", file, f"lacks {name}")
-    return arrays[name]
+        pickled = f"{name} needs pickle, which is never loaded; write it again as an array of text or numbers"
+        why = pickled if "allow_pickle" in str(error) else f"is no readable npz file ({str(error)[:60]})"
+        raise SourceError("bad_boxes", file, why) from error
+    return arrays
 
 
 def read_classes(folder: Folder, file: str) -> tuple[str, ...]:
@@ -158,23 +141,15 @@ def read_classes(folder: Folder, file: str) -> tuple[str, ...]:
     return tuple(c for c in labels if c not in ENDS)
 
 
-def stats(rooms: Iterable[CachedRoom], classes: Sequence[str]) -> dict[str, Any]:
+def stats(rooms: Sequence[CachedRoom], classes: Sequence[str]) -> dict[str, Any]:
     """Return what dataset_stats.txt holds, over the rooms of train and val: bounds, classes, how often each occurs."""
-    translations: list[NDArray[Any]] = [np.zeros((0, 3))]
-    sizes: list[NDArray[Any]] = [np.zeros((0, 3))]
-    angles: list[NDArray[Any]] = [np.zeros((0, 1))]
-    counts: Counter[str] = Counter()
-    for room in rooms:
-        translations.append(room.translations)
-        sizes.append(room.sizes)
-        angles.append(room.angles)
-        counts.update(classes[k] for k in room.classes.argmax(axis=1))
+    counts = Counter(classes[k] for room in rooms for k in room.classes.argmax(axis=1))
     total = max(1, sum(counts.values()))
     order = sorted(counts, key=lambda c: (-counts[c], c))
     return {
-        "bounds_translations": _bounds(translations),
-        "bounds_sizes": _bounds(sizes),
-        "bounds_angles": _bounds(angles),
+        "bounds_translations": _bounds([room.translations for room in rooms], 3),
+        "bounds_sizes": _bounds([room.sizes for room in rooms], 3),
+        "bounds_angles": _bounds([room.angles for room in rooms], 1),
         "class_labels": [*classes, *ENDS],
         "object_types": list(classes),
         "class_frequencies": {c: counts[c] / total for c in order},
@@ -183,10 +158,10 @@ def stats(rooms: Iterable[CachedRoom], classes: Sequence[str]) -> dict[str, Any]
     }
 
 
-def _bounds(parts: list[NDArray[Any]]) -> list[float]:
+def _bounds(parts: list[Floats], columns: int) -> list[float]:
     """Return the least value of every column, then the largest."""
-    whole = np.concatenate(parts).astype(np.float64)
-    return [*whole.min(axis=0).tolist(), *whole.max(axis=0).tolist()] if len(whole) else [0.0] * (2 * whole.shape[1])
+    whole = np.concatenate([np.zeros((0, columns)), *parts])
+    return [*whole.min(axis=0).tolist(), *whole.max(axis=0).tolist()] if len(whole) else [0.0] * (2 * columns)
 
 
 def write_stats(path: Path, content: dict[str, Any]) -> None:

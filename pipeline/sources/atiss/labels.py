@@ -1,27 +1,16 @@
-"""The four data sets that ATISS and DiffuScene cut 3D-FRONT into: their classes, our categories for them, their filters.
-
-Facts of the peers' published configurations: bedrooms have 21 classes, living and dining rooms 24, libraries 25.
-"""
+"""The four data sets that ATISS and DiffuScene cut 3D-FRONT into (manifests/peers.yaml): their classes, our categories for them, their filters."""
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from pathlib import Path
 
+from pipeline import params, yaml_text
 from pipeline.card import cards
 
-BED_CLASSES = (
-    "armchair", "bookshelf", "cabinet", "ceiling_lamp", "chair", "children_cabinet", "coffee_table", "desk", "double_bed",
-    "dressing_chair", "dressing_table", "kids_bed", "nightstand", "pendant_lamp", "shelf", "single_bed", "sofa", "stool", "table",
-    "tv_stand", "wardrobe",
-)  # fmt: skip
-LIVING_CLASSES = (
-    "armchair", "bookshelf", "cabinet", "ceiling_lamp", "chaise_longue_sofa", "chinese_chair", "coffee_table", "console_table",
-    "corner_side_table", "desk", "dining_chair", "dining_table", "l_shaped_sofa", "lazy_sofa", "lounge_chair", "loveseat_sofa",
-    "multi_seat_sofa", "pendant_lamp", "round_end_table", "shelf", "stool", "tv_stand", "wardrobe", "wine_cabinet",
-)  # fmt: skip
-LIBRARY_CLASSES = tuple(sorted({*LIVING_CLASSES, "dressing_table", "dressing_chair"} - {"tv_stand"}))
-BEDS = frozenset({"double_bed", "single_bed", "kids_bed"})
+PATH = Path(__file__).resolve().parents[3] / "manifests" / "peers.yaml"
 LEAST, HIGHEST, LOWEST = 3, 4.0, -0.005  # objects; [m] their top and bottom
+FOREIGN = frozenset({"sofa", "chair", "table", "console_table"})  # classes that are no category of ours
 
 
 @functools.cache
@@ -31,20 +20,16 @@ def _labels(label_set: str) -> Mapping[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """One data set: rooms whose type contains `word`.
+    """One data set; the fields are explained in manifests/peers.yaml."""
 
-    `label_set`: under which the cards of our categories name their classes there (names.peers) where these differ. `most` objects and `side` [m] of the floor's bounds are what its filters allow; `reach` [m] is half the side of the
-    square that its floor masks show.
-    """
-
-    name: str
     word: str
     classes: tuple[str, ...]
     label_set: str
     most: int
     side: float
     reach: float
-    needs: frozenset[str] = field(default_factory=frozenset)
+    needs: tuple[str, ...] = ()
+    name: str = ""
 
     def label(self, category: str) -> str | None:
         """Return the class of one of our categories, or None."""
@@ -54,18 +39,12 @@ class Kind:
     def categories(self, label: str) -> tuple[str, ...]:
         """Return our categories that have this class."""
         other = tuple(c for c, named in _labels(self.label_set).items() if named == label)
-        return other if label in _FOREIGN else (label, *other)
+        return other if label in FOREIGN else (label, *other)
 
 
-_FOREIGN = frozenset({"sofa", "chair", "table", "console_table"})  # classes that are no category of ours
 KINDS: Mapping[str, Kind] = {
-    kind.name: kind
-    for kind in (
-        Kind("bedroom", "bed", BED_CLASSES, "bedroom", 13, 6.0, 3.1, BEDS),
-        Kind("livingroom", "living", LIVING_CLASSES, "living", 21, 12.0, 6.2),
-        Kind("diningroom", "dining", LIVING_CLASSES, "living", 21, 12.0, 6.2),
-        Kind("library", "library", LIBRARY_CLASSES, "living", 10_000, 6.0, 3.1),
-    )
+    name: params.build(Kind, row | {"name": name}, name, "manifests/peers.yaml")
+    for name, row in yaml_text.parse(PATH.read_text(encoding="utf-8")).items()
 }
 
 
@@ -74,7 +53,5 @@ def kind_of(classes: tuple[str, ...]) -> Kind | None:
 
     Living and dining rooms share theirs: the first that fits is returned. None where a class is of no set.
     """
-    for kind in KINDS.values():
-        if classes and set(classes) <= set(kind.classes):
-            return replace(kind, classes=classes)
-    return None
+    fitting = (replace(kind, classes=classes) for kind in KINDS.values() if classes and set(classes) <= set(kind.classes))
+    return next(fitting, None)

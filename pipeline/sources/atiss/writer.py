@@ -1,10 +1,10 @@
 """Our training tables as the peers' cached rooms, so that ATISS and DiffuScene train on exactly our split."""
 
 import math
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import shapely
@@ -58,7 +58,10 @@ def _select_rooms(rooms: Rooms, kind: Kind, rejects: list[Row], *, filtered: boo
         others = sorted({o["category"] for o in objects} - {o["category"] for o in known})
         if others:
             rejects.append(reject("room", where, "peers_class", f"{len(objects) - len(known)} objects left out: {', '.join(others)}"))
-        scene_id = _unique(row["source_id"].split("/", 1)[-1].replace("_", "-"), taken)
+        scene_id = row["source_id"].split("/", 1)[-1].replace("_", "-")
+        while scene_id in taken:  # splits are looked up by it, and ids of rooms recur between houses
+            scene_id = f"{scene_id}-again"
+        taken.add(scene_id)
         yield split, to_cached_room(row, known, kind, scene_id)
 
 
@@ -71,20 +74,11 @@ def _refusal(row: Row, objects: Sequence[Row], known: Sequence[Row], kind: Kind)
         return f"{len(objects)} objects"
     if len(known) < len(objects):
         return f"holds {', '.join(sorted({o['category'] for o in objects if o not in known}))}"
-    if kind.needs and not kind.needs & {o["category"] for o in known}:
-        return f"none of {', '.join(sorted(kind.needs))}"
+    if kind.needs and not set(kind.needs) & {o["category"] for o in known}:
+        return f"none of {', '.join(kind.needs)}"
     if top > HIGHEST or low < LOWEST:
         return f"objects from {low:.3f} to {top:.3f} m"
     return f"floor of {span[0]:.1f} x {span[1]:.1f} m" if span.max() > kind.side else ""
-
-
-def _unique(scene_id: str, taken: set[str]) -> str:
-    """Return a scene id that is new: splits are looked up by it, and ids of rooms recur between houses."""
-    free = scene_id
-    while free in taken:
-        free = f"{free}-again"
-    taken.add(free)
-    return free
 
 
 def to_cached_room(row: Row, objects: Sequence[Row], kind: Kind, scene_id: str) -> CachedRoom:
@@ -111,13 +105,9 @@ def to_cached_room(row: Row, objects: Sequence[Row], kind: Kind, scene_id: str) 
         classes=classes,
         translations=(middle - centroid).astype(np.float32),
         sizes=(size[:, [0, 2, 1]] / 2).astype(np.float32),
-        angles=np.array([[_angle(o["yaw"])] for o in objects], np.float32).reshape(-1, 1),
+        # their range is [-pi, pi): pi itself becomes -pi
+        angles=np.array([-math.pi if o["yaw"] >= math.pi - 1e-7 else o["yaw"] for o in objects], np.float32).reshape(-1, 1),
     )
-
-
-def _angle(yaw: float) -> float:
-    """Return a yaw in the peers' range [-pi, pi): pi itself becomes -pi."""
-    return -math.pi if yaw >= math.pi - 1e-7 else yaw
 
 
 def floor_mesh(polygon: Floats) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
@@ -140,7 +130,7 @@ def floor_mask(polygon: Floats, centroid: NDArray[np.float32], reach: float) -> 
 
 def rooms_with_objects(rooms: Sequence[Row], objects: Sequence[Row], splits: Mapping[str, str]) -> list[tuple[str, Row, list[Row]]]:
     """Return (split, room, its objects) for all rooms, in the order of the rooms table."""
-    inside: dict[tuple[str, str], list[Any]] = {}
+    inside: dict[tuple[str, str], list[Row]] = defaultdict(list)
     for row in objects:
-        inside.setdefault((row["scene_id"], row["room_id"]), []).append(row)
-    return [(splits[row["scene_id"]], row, inside.get((row["scene_id"], row["room_id"]), [])) for row in rooms]
+        inside[row["scene_id"], row["room_id"]].append(row)
+    return [(splits[row["scene_id"]], row, inside[row["scene_id"], row["room_id"]]) for row in rooms]

@@ -94,9 +94,7 @@ def _room(pieces: Sequence[Placed], floor: Polygon, bearers: Sequence[int], taxo
     size = np.array([p.pose.size[:2] for p in pieces]).reshape(-1, 2)
     low, high = np.array([p.span for p in pieces]).reshape(-1, 2).T
     cards = [taxonomy.categories[p.category] for p in pieces]
-    own = np.array(
-        [b < 0 and card.mount != "ceiling" and card.name not in taxonomy.small for b, card in zip(bearers, cards, strict=True)], bool
-    )
+    own = np.array([b < 0 and card.mount != "ceiling" and card.layout for b, card in zip(bearers, cards, strict=True)], bool)
     tuck = np.array([{"seat": 1, "table": 2}.get(card.tuck or "", 0) for card in cards])
     level = np.minimum(high[:, None], high) - np.maximum(low[:, None], low) > FLAT
     rivals = own[:, None] & own & level & (tuck[:, None] + tuck != 3)
@@ -181,11 +179,10 @@ def _share_notch(room: Room, k: int, j: int, centres: Floats) -> bool:
     """Whether two boxes meet over floor that one of the things in them does not cover, as far as the models tell: the notch of a sofa."""
     if not (room.pieces[k].shape or room.pieces[j].shape):
         return False
-    a, b = (_column(room.pieces[i], centres[i]) for i in (k, j))
-    return shared_shape(a, b) < NOTCH
 
+    def column(i: int) -> Placed:  # full from top to bottom wherever it is anything
+        piece = room.pieces[i]
+        pose = replace(piece.pose, position=np.array([*centres[i], piece.pose.position[2]]))
+        return replace(piece, pose=pose, shape=fill_columns(piece.shape))
 
-def _column(piece: Placed, at: Floats) -> Placed:
-    """Return the piece with its centre there, full from top to bottom wherever it is anything."""
-    pose = replace(piece.pose, position=np.array([*at, piece.pose.position[2]]))
-    return replace(piece, pose=pose, shape=fill_columns(piece.shape) if piece.shape else b"")
+    return shared_shape(column(k), column(j)) < NOTCH

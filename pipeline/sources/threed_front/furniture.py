@@ -1,5 +1,6 @@
 """Furniture of a 3D-FRONT room as placed boxes, each kept or left out with a reason."""
 
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -10,16 +11,14 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.home import Placement
 from pipeline.sources.settings import FrontFilters
-from pipeline.sources.threed_front.future_scale import LONGEST, likeliest
+from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest
 from pipeline.sources.threed_front.house_file import FARTHEST, Child, Furniture
-from pipeline.sources.threed_front.model_hints import kinds_of
 from pipeline.sources.threed_front.notches import overlap_share
 from pipeline.sources.threed_front.poses import Box, Pose, place, yaw_and_tilt
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
 
-MIN_SIZE = 0.01  # [m]
 STANDING, TALL = 0.1, 1.0  # [m] a lamp whose foot is lower and that is higher hangs from no ceiling
 BELOW = 0.05  # [m] under the floor: rounding of the source
 
@@ -69,16 +68,20 @@ def mirrored_id(asset_id: str) -> str:
     return f"{asset_id}_mirrored"
 
 
+def stated_category(record: Furniture, taxonomy: Taxonomy) -> str | None:
+    """Return the category that a scene's record names, by the kind in its title where by nothing else."""
+    return taxonomy.from_future(record.category) or taxonomy.from_title(record.title)
+
+
 def category_of(record: Furniture, taxonomy: Taxonomy) -> str | None:
     """Return the category that the scene's own record gives.
 
-    Its category, else the kind in its title; where no more is said than a super-category or the title's group, the
-    member whose sizes fit the declared box best.
+    Where no more is said than a super-category or the title's group, the member whose sizes fit the declared box best.
     """
-    named = taxonomy.from_future(record.category) or taxonomy.from_title(record.title)
+    named = stated_category(record, taxonomy)
     if named or record.box is None:
         return named
-    return likeliest(np.array(record.box), taxonomy.of_kind(*kinds_of(record)))
+    return likeliest(np.array(record.box), taxonomy.of_kind(*record.kinds))
 
 
 def place_furniture(  # noqa: PLR0911 - one return per reason
@@ -128,19 +131,12 @@ def inside(piece: Placed, floor: Polygon) -> float:
 
 def _pose(child: Child, record: Furniture, model: Model | None, yaw: float) -> tuple[Pose, Floats, tuple[tuple[str, str], ...]]:
     """Return pose, scale on the asset, and notes; position and size rounded to 0.1 mm."""
-    notes: list[tuple[str, str]] = []
-    if model is None:
-        w, d, h = record.box or (0.0, 0.0, 0.0)
-        box, unit = Box((-w / 2, 0.0, -d / 2), (w / 2, h, d / 2)), 1.0
-        notes.append(("size_from_bbox", f"model {record.jid}"))
-    else:
-        box, unit = model.box, model.box.unit
-    raw = place(box, unit, child.position, yaw, child.scale)
+    w, d, h = record.box or (0.0, 0.0, 0.0)
+    raw = place(model.box if model else Box((-w / 2, 0.0, -d / 2), (w / 2, h, d / 2)), child.position, yaw, child.scale)
     pose = Pose(np.round(raw.position, 4) + 0.0, raw.yaw, np.round(raw.size, 4), raw.mirrored)
-    if pose.mirrored:
-        notes.append(("mirrored", f"scale {child.scale.tolist()}"))
     scale = np.round(pose.size / np.array(model.asset_size), 6) if model else np.ones(3)
-    return pose, scale, tuple(notes)
+    bare = () if model else (("size_from_bbox", f"model {record.jid}"),)
+    return pose, scale, (*bare, ("mirrored", f"scale {child.scale.tolist()}")) if pose.mirrored else bare
 
 
 def shared_volume(a: Placed, b: Placed) -> float:
@@ -171,18 +167,14 @@ def overlapping(objects: list[Placed], limits: FrontFilters, taxonomy: Taxonomy)
     large = [i for i, o in enumerate(objects) if o.category not in taxonomy.small]
     lamps = {c.name for c in taxonomy.categories.values() if c.super == "lighting"}
     order = sorted(large, key=lambda i: (objects[i].category in lamps, -float(np.prod(objects[i].pose.size)), i))
-    shapes = [o.footprint() for o in objects]
-    tree = shapely.STRtree(shapes) if shapes else None
-    near: dict[int, list[int]] = {}
-    if tree is not None:
-        for i, j in zip(*tree.query(shapes, predicate="intersects"), strict=True):
-            near.setdefault(int(i), []).append(int(j))
+    shapes = np.array([o.footprint() for o in objects], dtype=object)
+    near: dict[int, list[int]] = defaultdict(list)
+    for i, j in zip(*shapely.STRtree(shapes).query(shapes, predicate="intersects"), strict=True):
+        near[int(i)].append(int(j))
     dropped: dict[int, tuple[int, float]] = {}
     kept: set[int] = set()
     for i in order:
-        for j in near.get(i, ()):
-            if j not in kept:
-                continue
+        for j in filter(kept.__contains__, near[i]):
             tucked = {taxonomy.categories[objects[k].category].tuck for k in (i, j)} == {"seat", "table"}
             most = limits.max_overlap_tucked if tucked else limits.max_overlap
             share = round(shared_volume(objects[i], objects[j]), 2)

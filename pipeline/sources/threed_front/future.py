@@ -1,11 +1,15 @@
-"""3D-FUTURE models to assets: one folder with raw_model.obj, model.mtl and texture.png each, and model_info.json."""
+"""3D-FUTURE models to assets: one folder with raw_model.obj, model.mtl and texture.png each, and model_info.json; and their mirror images."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Mesh
+from pipeline import taxonomy
+from pipeline.entities.asset import Asset, Link, Mesh
+from pipeline.entities.files import load_asset, save_asset
 from pipeline.sources.densities import density
 from pipeline.sources.guarded import Folder, read_json
 from pipeline.sources.meshes.colliders import POCKET, Ints, link, solids
@@ -13,14 +17,15 @@ from pipeline.sources.meshes.touching import touch_tolerances
 from pipeline.sources.meshes.visual_meshes import Palette, read_obj, visual
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
-from pipeline.sources.threed_front.furniture import MIN_SIZE
-from pipeline.sources.threed_front.future_scale import LONGEST, likeliest, unit_factor
+from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest, unit_factor
+from pipeline.sources.threed_front.furniture import mirrored_id
 from pipeline.sources.threed_front.model_hints import Hint
 from pipeline.sources.threed_front.poses import Box, to_ours
-from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
 Notes = list[tuple[str, str]]
+NAMES = ("category", "super-category", "style", "theme", "material")
+FLIP = np.array([-1.0, 1.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +33,11 @@ class ModelInfo:
     """An entry of model_info.json; names as written, "" for null."""
 
     model_id: str
-    category: str
-    super_category: str
-    style: str
-    theme: str
-    material: str
+    category: str = ""
+    super_category: str = ""
+    style: str = ""
+    theme: str = ""
+    material: str = ""
 
 
 def read_model_info(folder: Folder, file: str) -> tuple[dict[str, ModelInfo], list[Row]]:
@@ -50,14 +55,8 @@ def read_model_info(folder: Folder, file: str) -> tuple[dict[str, ModelInfo], li
         elif model_id in by_id:
             rejects.append(reject("model", model_id, "duplicate", "a second entry in model_info.json"))
         else:
-            names = (entry.get(k) for k in ("category", "super-category", "style", "theme", "material"))
-            by_id[model_id] = ModelInfo(model_id, *(n if isinstance(n, str) else "" for n in names))
+            by_id[model_id] = ModelInfo(model_id, *(n if isinstance(n := entry.get(k), str) else "" for k in NAMES))
     return by_id, rejects
-
-
-def asset_id(jid: str) -> str:
-    """Return the asset id of a model."""
-    return f"ff_{''.join(c if c.isalnum() and c.isascii() else '_' for c in jid.lower())}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,31 +68,21 @@ class FutureModel:
     rejects: tuple[Row, ...]
 
 
-def read_model(
-    models: Folder,
-    info: ModelInfo,
-    taxonomy: Taxonomy,
-    limits: ModelLimits,
-    licence: str,
-    hint: Hint | None = None,
-    *,
-    cut: bool = False,
-) -> FutureModel:
+def read_model(models: Folder, info: ModelInfo, limits: ModelLimits, licence: str, hint: Hint | None = None) -> FutureModel:
     """Read the model of `info` from its folder in `models`; `hint` is what scene records say of it.
 
-    With `cut` parts that are not convex are cut. The mesh is turned into our frame, (x, y, z) -> (x, -z, y), scaled to metres, and its box set bottom-centred at the
+    The mesh is turned into our frame, (x, y, z) -> (x, -z, y), scaled to metres, and its box set bottom-centred at the
     origin. Raises SourceError for what cannot be an asset.
     """
-    folder = models.sub(info.model_id)
+    folder, words = models.sub(info.model_id), taxonomy.load()
     file = read_obj(folder, "raw_model.obj")
     used = np.unique(np.concatenate([g.faces.ravel() for g in file.groups]))
     low, high = file.vertices[used].min(axis=0), file.vertices[used].max(axis=0)
     extent = (high - low)[[0, 2, 1]]
-    category, unit, notes = identify_category(info, hint or Hint(), extent, taxonomy)
+    category, unit, notes = identify_category(info, hint or Hint(), extent)
     size = np.round(extent * unit, 4)
     if size.max() > LONGEST or size.min() < MIN_SIZE:
         raise SourceError("bad_size", info.model_id, f"size {size.tolist()}")
-    box = Box(tuple(low.tolist()), tuple(high.tolist()), unit)
     middle = np.array([(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2])
     points = to_ours((file.vertices - middle) * unit)
     palette = Palette(folder, limits.max_texture)
@@ -104,44 +93,69 @@ def read_model(
         if mesh:
             visuals.append(mesh)
             collisions.append((points, group.faces))
-    known = taxonomy.categories[category]
+    known = words.categories[category]
     kind, how = known.super, touch_tolerances(known, opens=False)
-    matter = solids("base", collisions, limits, POCKET * float(np.linalg.norm(size)) if cut else None)
+    matter = solids("base", collisions, limits, POCKET * float(np.linalg.norm(size)) if limits.cut == "all" else None)
     base = link("base", visuals, matter, density(kind, info.material, category), kind, how=how)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")
+    asset_id = f"ff_{''.join(c if c.isalnum() and c.isascii() else '_' for c in info.model_id.lower())}"
     asset = Asset(
-        asset_id(info.model_id), category, size, (base,), (), tuple(palette.materials), "3d-future", info.model_id, licence,
-        taxonomy.styles.get(info.style.lower(), ""), kind, dict(palette.textures),
+        asset_id, category, size, (base,), (), tuple(palette.materials), "3d-future", info.model_id, licence,
+        words.styles.get(info.style.lower(), ""), kind, dict(palette.textures),
     )  # fmt: skip
-    notes += [*matter.notes, *palette.notes]
-    return FutureModel(asset, box, tuple(reject("model", info.model_id, reason, detail) for reason, detail in notes))
+    rejects = tuple(reject("model", info.model_id, *note) for note in (*notes, *matter.notes, *palette.notes))
+    return FutureModel(asset, Box(tuple(low.tolist()), tuple(high.tolist()), unit), rejects)
 
 
-def identify_category(info: ModelInfo, hint: Hint, extent: Floats, taxonomy: Taxonomy) -> tuple[str, float, Notes]:
+def identify_category(info: ModelInfo, hint: Hint, extent: Floats) -> tuple[str, float, Notes]:
     """Return the category of a model of `extent` (w, d, h) [its own units], the factor to metres, and what had to be inferred.
 
     The category is that of model_info.json, else of the scenes' records; where both name a super-category at most, the
     member of it whose sizes fit best. Raises SourceError `unknown_category` where nothing is known.
     """
     notes: Notes = []
-    category = taxonomy.from_future(info.category)
-    declared = hint.box()
+    words, declared = taxonomy.load(), hint.box()
+    named = f"category {info.category!r}, super-category {info.super_category!r}"
+    category = words.from_future(info.category)
     if category is None:
-        category = hint.category()
+        members = words.of_kind(info.category, info.super_category, hint.kind())
+        mounted = [m for m in members if words.categories[m].mount in hint.mounts()] or members
+        category = hint.category() or likeliest(extent * unit_factor(extent, declared, None), mounted)
         if category is None:
-            size = extent * unit_factor(extent, declared, None)
-            members = taxonomy.of_kind(info.category, info.super_category, hint.kind())
-            category = likeliest(size, [m for m in members if taxonomy.categories[m].mount in hint.mounts()] or members)
-        if category is None:
-            named = f"category {info.category!r}, super-category {info.super_category!r}"
             raise SourceError("unknown_category", info.model_id, named)
-        notes.append(("category_inferred", f"{category}, for category {info.category!r}, super-category {info.super_category!r}"))
+        notes.append(("category_inferred", f"{category}, for {named}"))
     unit = unit_factor(extent, declared, category)
     if unit != 1.0:
         against = f"declared {np.round(declared, 3).tolist()}" if declared is not None else f"as {category}"
         notes.append(("centimetres", f"extent {np.round(extent, 4).tolist()}, {against}: times {unit:g}"))
-    for kind, name, known in (("style", info.style, taxonomy.styles), ("material", info.material, taxonomy.materials)):
+    for kind, name, known in (("style", info.style, words.styles), ("material", info.material, words.materials)):
         if name and name.lower() not in known:
             notes.append(("unknown_name", f"{kind} {name!r}"))
     return category, unit, notes
+
+
+def add_mirrored(folder: Path, assets: list[Row], used: Iterable[str]) -> list[Row]:
+    """Write the mirror images that are among the `used` asset ids, and return their rows of the assets table.
+
+    3D-FRONT places some furniture with a negative scale, such as an L-shaped sofa of the other hand. `assets` are the rows of the
+    models themselves, whose files lie in `folder`.
+    """
+    origin = {mirrored_id(row["asset_id"]): row for row in assets}
+    rows = []
+    for asset_id in sorted(set(used) & origin.keys()):
+        row, file = origin[asset_id], f"{asset_id}.safetensors"
+        asset = load_asset(folder / row["file"])
+        digest = save_asset(folder / file, replace(asset, asset_id=asset_id, links=tuple(map(_mirror, asset.links))))
+        rows.append({**row, "asset_id": asset_id, "file": file, "sha256": digest})
+    return rows
+
+
+def _mirror(link: Link) -> Link:
+    """Return the mirror image of a link across its width (x), faces turned so that they still look outwards."""
+    visuals, colliders = (
+        tuple(replace(m, vertices=m.vertices * FLIP.astype(np.float32) + np.float32(0), faces=m.faces[:, ::-1].copy()) for m in meshes)
+        for meshes in (link.visuals, link.colliders)
+    )
+    turn = np.outer(FLIP, FLIP)
+    return replace(link, visuals=visuals, colliders=colliders, com=link.com * FLIP + 0.0, inertia=link.inertia * turn + 0.0)

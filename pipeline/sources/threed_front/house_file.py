@@ -34,6 +34,11 @@ class Furniture:
     box: tuple[float, float, float] | None
     foot: float | None = None
 
+    @property
+    def kinds(self) -> tuple[str, str]:
+        """Names that may be a super-category or a title group."""
+        return self.category, self.title.split("/", 1)[0]
+
 
 @dataclass(frozen=True, slots=True)
 class MeshRecord:
@@ -46,22 +51,23 @@ class MeshRecord:
 
     def vertices(self) -> Floats:
         """Return (V, 3) world coordinates. Raises SourceError for anything that is not finite triples."""
-        values = floats(_parse_numbers(self.xyz, f"mesh {self.uid}"), f"mesh {self.uid}")
+        where = f"mesh {self.uid}"
+        values = floats(_parse_numbers(self.xyz, where), where)
         if len(values) % 3:
-            raise SourceError("bad_structure", f"mesh {self.uid}", "xyz is not a list of triples")
+            raise SourceError("bad_structure", where, "xyz is not a list of triples")
         if np.abs(values).max(initial=0.0) > FARTHEST:
-            raise SourceError("bad_number", f"mesh {self.uid}", "has coordinates beyond 10 km")
+            raise SourceError("bad_number", where, "has coordinates beyond 10 km")
         return values.reshape(-1, 3)
 
     def triangles(self) -> Floats:
         """Return (T, 3, 3) corner coordinates."""
-        vertices = self.vertices()
+        vertices, where = self.vertices(), f"mesh {self.uid}"
         try:
-            index = np.asarray(_parse_numbers(self.faces, f"mesh {self.uid}"), dtype=np.int64)
+            index = np.asarray(_parse_numbers(self.faces, where), dtype=np.int64)
         except (TypeError, ValueError, OverflowError) as error:
-            raise SourceError("bad_structure", f"mesh {self.uid}", "faces are not integers") from error
+            raise SourceError("bad_structure", where, "faces are not integers") from error
         if index.ndim != 1 or len(index) % 3 or (len(index) and (index.min() < 0 or index.max() >= len(vertices))):
-            raise SourceError("bad_structure", f"mesh {self.uid}", "faces do not index its vertices by triples")
+            raise SourceError("bad_structure", where, "faces do not index its vertices by triples")
         return vertices[index.reshape(-1, 3)]
 
 
@@ -154,10 +160,11 @@ def parse_house(tree: Any, name: str, arrays: Sequence[bytes] = ()) -> HouseFile
     uid = _text(tree.get("uid"))
     if uid != name:
         rejects.append(reject("house", name, "uid_mismatch", f"the file says {uid!r}"))
-    furniture = _first_by_uid((furniture_record(r) for r in _records(tree, "furniture")), name, "furniture", rejects)
+    furniture = _first_by_uid(map(_furniture, _records(tree, "furniture")), name, "furniture", rejects)
     meshes = _first_by_uid((_mesh(r, arrays) for r in _records(tree, "mesh")), name, "mesh", rejects)
     rooms = tuple(_room(r, name, furniture, rejects) for r in scene["room"] if isinstance(r, dict))
-    return HouseFile(name, furniture, meshes, rooms, _entry_rooms(tree), tuple(rejects), uid)
+    entries = (door for door in _records(tree.get("extension"), "door") if door.get("type") == "entryDoor")
+    return HouseFile(name, furniture, meshes, rooms, tuple(_text(door.get("roomId")) for door in entries), tuple(rejects), uid)
 
 
 def declared_box(record: Mapping[str, Any]) -> tuple[float, float, float] | None:
@@ -167,28 +174,20 @@ def declared_box(record: Mapping[str, Any]) -> tuple[float, float, float] | None
     one without `size`, are (width, height, depth).
     """
     size, bbox = record.get("size"), record.get("bbox")
-    if isinstance(bbox, list) and bbox and isinstance(bbox[0], list):
-        return _whd(bbox[0], y_up=True)
-    if bbox and size:
-        return _whd(bbox, y_up=False)
-    if bbox:
-        return _whd(bbox, y_up=True)
-    return _whd(size, y_up=False)
-
-
-def _whd(values: Any, *, y_up: bool) -> tuple[float, float, float] | None:
+    nested = isinstance(bbox, list) and len(bbox) > 0 and isinstance(bbox[0], list)
+    given: Any = bbox[0] if nested and bbox else bbox or size
     try:
-        a, b, c = (abs(float(v)) for v in values)
+        a, b, c = (abs(float(v)) for v in given)
     except (TypeError, ValueError, OverflowError):
         return None
     if not all(math.isfinite(v) and v > 0 for v in (a, b, c)):
         return None
-    return (a, c, b) if y_up else (a, b, c)
+    return (a, c, b) if nested or (bbox and not size) else (a, b, c)
 
 
-def _records(tree: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
+def _records(tree: Any, key: str) -> list[dict[str, Any]]:
     """Return the records of a list that another dialect may lack."""
-    entries = tree.get(key)
+    entries = tree.get(key) if isinstance(tree, dict) else None
     return [r for r in entries if isinstance(r, dict)] if isinstance(entries, list) else []
 
 
@@ -206,18 +205,11 @@ def _first_by_uid(records: Iterable[Any], house: str, kind: str, rejects: list[R
     return kept
 
 
-def furniture_record(record: Mapping[str, Any]) -> Furniture:
+def _furniture(record: Mapping[str, Any]) -> Furniture:
     """Return a furniture record of any variant; what is missing or of another type is empty."""
-    valid = record.get("valid")
-    title = _text(record.get("title")) or _text(record.get("type"))
-    return Furniture(
-        _text(record.get("uid")),
-        _text(record.get("jid")),
-        valid if isinstance(valid, bool) else None,
-        _text(record.get("category")),
-        title.lower(),
-        declared_box(record),
-    )
+    uid, jid, category, title, kind = (_text(record.get(key)) for key in ("uid", "jid", "category", "title", "type"))
+    valid = record["valid"] if isinstance(record.get("valid"), bool) else None
+    return Furniture(uid, jid, valid, category, (title or kind).lower(), declared_box(record))
 
 
 def _mesh(record: Mapping[str, Any], arrays: Sequence[bytes]) -> MeshRecord:
@@ -248,21 +240,15 @@ def _room(record: Mapping[str, Any], house: str, furniture: Mapping[str, Furnitu
 def _child(record: Mapping[str, Any]) -> Child:
     ref = _text(record.get("ref"))
 
-    def vector(key: str, default: tuple[float, ...]) -> Floats:
+    def vector(key: str, usual: Floats) -> Floats:
         given = record.get(key)
-        values = floats(default if given is None else given, f"{key} of {ref}")
-        if len(values) != len(default):
-            raise SourceError("bad_number", ref, f"{key} has {len(values)} numbers, not {len(default)}")
+        values = usual if given is None else floats(given, f"{key} of {ref}")
+        if len(values) != len(usual):
+            raise SourceError("bad_number", ref, f"{key} has {len(values)} numbers, not {len(usual)}")
         return values
 
-    pose = vector("pos", (0, 0, 0)), vector("rot", (0, 0, 0, 1)), vector("scale", (1, 1, 1))
+    pose = vector("pos", ORIGIN), vector("rot", NO_TURN), vector("scale", ONE)
     return Child(ref, _text(record.get("instanceid")), *pose, _text(record.get("replace_jid")))
-
-
-def _entry_rooms(tree: Mapping[str, Any]) -> tuple[str, ...]:
-    extension = tree.get("extension")
-    doors = _records(extension, "door") if isinstance(extension, dict) else []
-    return tuple(_text(d.get("roomId")) for d in doors if d.get("type") == "entryDoor")
 
 
 def _text(value: Any) -> str:

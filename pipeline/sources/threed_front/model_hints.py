@@ -4,24 +4,20 @@ A model's own files say neither its unit nor, in a few thousand rooms of the rel
 scenes that use it do.
 """
 
-import json
-import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import taxonomy
-from pipeline.sources.guarded import MAX_CONTAINERS, MAX_JSON, Folder
-from pipeline.sources.reasons import SourceError
-from pipeline.sources.threed_front.house_file import Furniture, furniture_record
+from pipeline.sources.threed_front.furniture import stated_category
+from pipeline.sources.threed_front.house import load_house
+from pipeline.sources.threed_front.house_file import Furniture
 from pipeline.taxonomy import Taxonomy
 
-_SCENE = re.compile(rb'"scene"\s*:\s*(?=\{)')
-_KEY = re.compile(rb'"furniture"\s*:\s*(?=\[)')
-MAX_LIST = 8 << 20  # bytes of one file's list of furniture; real ones have some 20 kB
 MAX_BOXES = 32  # declared boxes of one model that are kept
 ON_FLOOR = 0.1  # [m]
 
@@ -48,58 +44,32 @@ class Hint:
             return frozenset({"floor", "wall", "ceiling"})
         return frozenset({"floor"} if float(np.median(self.feet)) < ON_FLOOR else {"wall", "ceiling"})
 
-    def category(self) -> str | None:
-        """Return the category that most records give, or None."""
-        return min(self.categories, key=lambda c: (-self.categories[c], c)) if self.categories else None
+    def category(self) -> str:
+        """Return the category that most records give, or ""."""
+        return _commonest(self.categories)
 
     def kind(self) -> str:
         """Return the super-category or title group that most records give, or ""."""
-        return min(self.kinds, key=lambda k: (-self.kinds[k], k)) if self.kinds else ""
+        return _commonest(self.kinds)
 
 
-def records(folder: Folder, file: str) -> list[Furniture]:
-    """Return the valid furniture records of one house file, without reading the rest of it.
+def _commonest(names: Counter[str]) -> str:
+    return min(names, key=lambda name: (-names[name], name), default="")
 
-    A file that cannot be read gives none here: it is reported when the house itself is read.
+
+def records(root: Path, file: str) -> list[Furniture]:
+    """Return the valid furniture records of one house file, those of lamps with the height at which they are placed.
+
+    A file that cannot be read raises SourceError here as well as when the house itself is read.
     """
-    try:
-        data = folder.read(file, MAX_JSON)
-        start = _KEY.search(data)
-        if start is None:
-            return []
-        end = data.find(b'"mesh"', start.end())
-        part = data[start.end() : end if end > 0 else start.end() + MAX_LIST]
-        if len(part) > MAX_LIST or part.count(b"{") + part.count(b"[") > MAX_CONTAINERS:
-            return []
-        tree, _ = json.JSONDecoder().raw_decode(part.decode("utf-8", "replace"))
-    except (SourceError, ValueError, RecursionError):
-        return []
-    furniture = (furniture_record(r) for r in tree if isinstance(r, dict))
-    valid = [r for r in furniture if r.valid and r.jid]
-    lamps = {r.uid for r in valid if _is_some_lamp(r)}
-    feet = _feet(data, lamps) if lamps else {}
-    return [replace(r, foot=feet.get(r.uid)) for r in valid]
+    house, words = load_house(root, file), taxonomy.load()
+    feet = {child.ref: float(child.position[1]) for room in house.rooms for child in room.children}
+    valid = (record for record in house.furniture.values() if record.valid and record.jid)
+    return [replace(r, foot=feet.get(r.uid)) if _is_some_lamp(r, words) else r for r in valid]
 
 
-def _is_some_lamp(record: Furniture) -> bool:
-    words = taxonomy.load()
-    named = words.from_future(record.category) or words.from_title(record.title)
-    return named is None and any("floor_lamp" in words.of_kind(name) for name in kinds_of(record))
-
-
-def _feet(data: bytes, uids: set[str]) -> dict[str, float]:
-    """Return how high above the floor those records are placed [m]; what cannot be read is left to whoever reads the house."""
-    start = None
-    for start in _SCENE.finditer(data):  # noqa: B007 - the last one is meant: the word may occur in a title
-        pass
-    if start is None:
-        return {}
-    try:
-        scene, _ = json.JSONDecoder().raw_decode(data[start.end() :].decode("utf-8", "replace"))
-        children = [c for room in scene["room"] for c in room["children"]]
-        return {c["ref"]: float(c["pos"][1]) for c in children if c["ref"] in uids}
-    except (ValueError, TypeError, KeyError, IndexError, RecursionError):
-        return {}
+def _is_some_lamp(record: Furniture, words: Taxonomy) -> bool:
+    return stated_category(record, words) is None and any("floor_lamp" in words.of_kind(name) for name in record.kinds)
 
 
 def hints(houses: Iterable[Iterable[Furniture]], words: Taxonomy) -> Mapping[str, Hint]:
@@ -111,15 +81,8 @@ def hints(houses: Iterable[Iterable[Furniture]], words: Taxonomy) -> Mapping[str
             hint.boxes.append(record.box)
         if record.foot is not None and len(hint.feet) < MAX_BOXES:
             hint.feet.append(record.foot)
-        named = words.from_future(record.category) or words.from_title(record.title)
-        if named:
+        if named := stated_category(record, words):
             hint.categories[named] += 1
         else:
-            hint.kinds.update(name for name in kinds_of(record) if words.of_kind(name))
+            hint.kinds.update(name for name in record.kinds if words.of_kind(name))
     return by_model
-
-
-def kinds_of(record: Furniture) -> Iterator[str]:
-    """Yield the names of a record that may be a super-category or a title group."""
-    yield record.category
-    yield record.title.split("/", 1)[0]

@@ -27,7 +27,8 @@ def occupancy_bits(meshes: Iterable[Mesh], size: Floats) -> bytes:
     mask = np.zeros(CELLS, np.bool_)
     cells = np.array(CELLS)
     for mesh in meshes:
-        triangles = (mesh.vertices.astype(np.float64) / size + [0.5, 0.5, 0.0])[_different(mesh.faces)] * cells
+        different = np.unique(mesh.faces, axis=0)  # a large one drawn a hundred thousand times takes minutes
+        triangles = (mesh.vertices.astype(np.float64) / size + [0.5, 0.5, 0.0])[different] * cells
         sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1, initial=0.0)
         steps = np.clip(np.ceil(DENSITY * sides), 1, MOST).astype(int)
         for count in np.unique(steps):
@@ -39,15 +40,6 @@ def occupancy_bits(meshes: Iterable[Mesh], size: Floats) -> bytes:
     below = np.logical_or.accumulate(mask, axis=2)
     above = np.logical_or.accumulate(mask[:, :, ::-1], axis=2)[:, :, ::-1]
     return np.packbits(below & above).tobytes()
-
-
-def _different(faces: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Return faces (F, 3) without those that are there again: a large one drawn a hundred thousand times takes minutes."""
-    a, b, c = faces.astype(np.int64).T
-    count = int(faces.max(initial=0)) + 1
-    if count >= 1 << 21:  # three do not fit in 63 bits
-        return faces
-    return faces[np.unique((a * count + b) * count + c, return_index=True)[1]]
 
 
 @functools.lru_cache(MOST)

@@ -8,6 +8,7 @@ flat: the threshold of a door, the sill of a window, the head of a hole; they be
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -32,6 +33,8 @@ MESHES: dict[str, tuple[Evidence, Origin]] = {
 }
 MIN_WIDTH = 0.35  # [m] a narrower reveal is a pipe's hole or one jamb of several
 MIN_PANE = 0.2  # [m] the same for windows: a bay has narrow panes
+LEAST: Mapping[Evidence, float] = {"door": MIN_WIDTH, "window": MIN_PANE, "hole": MIN_WIDTH}
+SAME = 0.35  # [m] two pieces of evidence this near, of one direction, are one opening
 FLAT = 0.1  # [m] what is lower is a threshold, a sill or a head
 DOOR_WIDTH, DOOR_HEIGHT = 0.9, 2.1  # [m] of a leaf whose size is not in the file
 WINDOW_WIDTH, WINDOW_HEIGHT = 1.5, 1.4  # [m] the same
@@ -68,9 +71,25 @@ class OpeningEvidence:
         """Unit normal (2,) of the wall, to the left of `along`."""
         return np.array([-self.along[1], self.along[0]])
 
+    @property
+    def ends(self) -> Floats:
+        """Both ends (2, 2) of its middle line."""
+        half = self.width / 2 * self.along
+        return np.array([self.centre - half, self.centre + half])
+
+    def offset(self, point: Floats) -> tuple[float, float]:
+        """Return how far a point (2,) lies from the middle: along the wall and across it [m]."""
+        apart = point - self.centre
+        return float(apart @ self.along), float(apart @ self.across)
+
+    def reaches(self, point: Floats) -> bool:
+        """Whether a point (2,) lies at it, give or take SAME."""
+        along, across = map(abs, self.offset(point))
+        return along < self.width / 2 + SAME and across < self.depth / 2 + SAME
+
     def span(self, other: OpeningEvidence) -> tuple[float, float]:
         """Return from where to where the other reaches along this one, measured from this one's centre [m]."""
-        middle = float((other.centre - self.centre) @ self.along)
+        middle, _ = self.offset(other.centre)
         half = abs(float(other.along @ self.along)) * other.width / 2
         return middle - half, middle + half
 
@@ -89,21 +108,13 @@ def from_mesh(evidence: Evidence, vertices: Floats, triangles: Floats | None = N
     if len(points) < 3:
         return None
     around = shapely.MultiPoint(points[:, :2]).minimum_rotated_rectangle
-    frame = np.asarray(around.exterior.coords if isinstance(around, Polygon) else [])
-    if len(frame) < 5:  # the points are on one line: a flat leaf
-        low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
-        if np.ptp(points[:, 0]) and np.ptp(points[:, 1]) and np.corrcoef(points[:, 0], points[:, 1])[0, 1] < 0:
-            low[1], high[1] = high[1], low[1]
-        sides = np.array([high - low, [0.0, 0.0]])
-        centre = (low + high) / 2
-    else:
-        sides = np.array([frame[1] - frame[0], frame[2] - frame[1]])
-        centre = frame[:4].mean(axis=0)
-    lengths = np.hypot(sides[:, 0], sides[:, 1])
+    frame = np.asarray(around.exterior.coords if isinstance(around, Polygon) else around.coords)
+    sides = np.diff(frame[:3], axis=0)
+    lengths = np.append(np.hypot(*sides.T), 0.0)  # a flat leaf has one side
     long = int(np.argmax(lengths))
     if lengths[long] < 1e-3:
         return None
-    sill, top = float(points[:, 2].min()), float(points[:, 2].max())
+    centre, sill, top = frame[:4].mean(axis=0), float(points[:, 2].min()), float(points[:, 2].max())
     hole = OpeningEvidence(evidence, centre, sides[long] / lengths[long], float(lengths[long]), sill, top, float(lengths[1 - long]), origin)
     if evidence == "window" or hole.flat or triangles is None or not len(triangles):
         return hole
@@ -120,19 +131,12 @@ def from_furniture(title: str, position: Floats, yaw: float, box: tuple[float, f
         return None
     point = to_ours(position)
     evidence: Evidence = "door" if kind == "door" else "window"
-    usual = (DOOR_WIDTH, 0.0, DOOR_HEIGHT) if kind == "door" else (WINDOW_WIDTH, 0.0, WINDOW_HEIGHT)
-    width, _, height = box or usual
+    width, _, height = box or ((DOOR_WIDTH, 0.0, DOOR_HEIGHT) if kind == "door" else (WINDOW_WIDTH, 0.0, WINDOW_HEIGHT))
     if box and kind == "door":
         width, height = width - CASING[0], height - CASING[1]
     sill = float(max(point[2], 0.0))
     along = np.array([math.cos(yaw), math.sin(yaw)])
-    least = MIN_WIDTH if kind == "door" else MIN_PANE
-    return OpeningEvidence(evidence, point[:2], along, max(width, least), sill, sill + height, 0.0, "record", box is not None)
-
-
-def without_casing(frame: OpeningEvidence) -> OpeningEvidence:
-    """Return a frame that shows no faces within it as what is usually clear of it."""
-    return replace(frame, width=max(frame.width - CASING[0], MIN_WIDTH), top=frame.top - CASING[1])
+    return OpeningEvidence(evidence, point[:2], along, max(width, LEAST[evidence]), sill, sill + height, 0.0, "record", box is not None)
 
 
 def _clear(hole: OpeningEvidence, triangles: Floats) -> OpeningEvidence:
@@ -141,7 +145,9 @@ def _clear(hole: OpeningEvidence, triangles: Floats) -> OpeningEvidence:
     half = hole.width / 2
     low, high = _widest(_line_crossings(up, along, hole.sill + LEVEL * (hole.top - hole.sill)), -half, half)
     if high - low < max(LEAST_CLEAR * hole.width, MIN_WIDTH):
-        return without_casing(hole) if hole.origin == "frame" else hole
+        if hole.origin != "frame":
+            return hole
+        return replace(hole, width=max(hole.width - CASING[0], MIN_WIDTH), top=hole.top - CASING[1])
     heads = [start for start, _ in _line_crossings(along, up, low + LEVEL * (high - low)) if start > hole.sill + HEADROOM]
     return replace(hole.between(low, high), top=min(heads, default=hole.top))
 

@@ -21,12 +21,6 @@ class Box:
     high: tuple[float, float, float]
     unit: float = 1.0
 
-    @property
-    def extent(self) -> Floats:
-        """Full extents (w, d, h) in our axis order [file units]."""
-        x, y, z = np.subtract(self.high, self.low)
-        return np.array([x, z, y])
-
 
 @dataclass(frozen=True, slots=True)
 class Pose:
@@ -54,13 +48,13 @@ def yaw_and_tilt(rotation: Floats) -> tuple[float, float]:
     return math.atan2(2 * (w * y + x * z), 1 - 2 * (x * x + y * y)), tilt
 
 
-def place(box: Box, unit: float, position: Floats, yaw: float, scale: Floats) -> Pose:
+def place(box: Box, position: Floats, yaw: float, scale: Floats) -> Pose:
     """Return where the model's box ends up: v' = R(yaw) (scale . unit . v) + position, in the file's frame.
 
     A negative scale mirrors. Two negative plan axes are a half turn; one mirrors across the model's width once the
     half turn is taken out. `scale` y must be positive.
     """
-    low, high = np.array(box.low) * unit, np.array(box.high) * unit
+    low, high = np.array(box.low) * box.unit, np.array(box.high) * box.unit
     middle = (low + high) / 2
     bottom = np.array([middle[0], low[1], middle[2]]) * scale
     c, s = math.cos(yaw), math.sin(yaw)

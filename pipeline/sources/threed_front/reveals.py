@@ -3,14 +3,13 @@
 import itertools
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from shapely.geometry import LineString, Point
 
-from pipeline.sources.threed_front.opening_evidence import FLAT, MIN_PANE, MIN_WIDTH, ORIGINS, Evidence, Floats, OpeningEvidence
+from pipeline.sources.threed_front.opening_evidence import FLAT, LEAST, MIN_PANE, ORIGINS, SAME, Evidence, OpeningEvidence
 
-SAME = 0.35  # [m] two pieces of evidence this near, of one direction, are one opening
 WIDER = 0.4  # [m] a frame is at most so much wider than what it frames; what is wider is an opening of its own
 AJAR, FARTHEST_LEAF = 0.9, 0.8  # of the reveal's width, and [m]: how far the middle of a leaf that is drawn open lies from it
 JAMB_HEIGHT = 1.5  # [m] a lower reveal is no jamb of a door
@@ -19,30 +18,20 @@ ADJOIN = 0.15  # [m] panes of a bay whose ends are this near meet at a corner
 MULLION = 0.1  # [m] between windows whose widths the file does not say
 
 
-@dataclass(frozen=True, slots=True)
-class Gathered:
-    """Openings as the evidence has them, and what is no opening: thresholds without a reveal, jambs without another."""
-
-    holes: list[OpeningEvidence]
-    rest: list[OpeningEvidence]
-
-
-def group_evidence(evidence: Iterable[OpeningEvidence]) -> Gathered:
-    """Sort evidence into openings."""
-    all_of_it = list(evidence)
-    narrow = [h for h in all_of_it if h.width < (MIN_PANE if h.evidence == "window" else MIN_WIDTH)]
-    wide = [h for h in all_of_it if not any(h is n for n in narrow)]
+def group_evidence(evidence: Sequence[OpeningEvidence]) -> tuple[list[OpeningEvidence], list[OpeningEvidence]]:
+    """Return openings as the evidence has them, and what is none: thresholds without a reveal, jambs without another."""
+    narrow, wide = ([h for h in evidence if (h.width < LEAST[h.evidence]) is less] for less in (True, False))
     between, odd = jambs(narrow, merge(wide))
     holes = merge([*wide, *between])
     flat = [h for h in holes if h.flat]
     upright = [replace(h, evidence="door") if h.evidence == "hole" and any(_ends(h, n) for n in narrow) else h for h in holes if not h.flat]
-    return Gathered(_apart(upright), [h for h in (*flat, *odd) if not is_at_hole(h.centre, upright)])
+    return _apart(upright), [h for h in (*flat, *odd) if not any(hole.reaches(h.centre) for hole in upright)]
 
 
 def _ends(hole: OpeningEvidence, jamb: OpeningEvidence) -> bool:
     """Whether a jamb of a door ends a hole, which then is that door's."""
-    apart = jamb.centre - hole.centre
-    beside, across = abs(abs(float(apart @ hole.along)) - hole.width / 2), abs(float(apart @ hole.across))
+    along, across = map(abs, hole.offset(jamb.centre))
+    beside = abs(along - hole.width / 2)
     return jamb.evidence == "door" and not jamb.flat and beside < ADJOIN and across < hole.depth / 2 + ADJOIN
 
 
@@ -55,26 +44,22 @@ def merge(holes: Iterable[OpeningEvidence]) -> list[OpeningEvidence]:
             groups[min(mine)[1]].append(hole)
         else:
             groups.append([hole])
-    return sorted(
-        (_merge_group(group) for group in groups), key=lambda h: (h.origin == "record", -round(h.width, 3), tuple(np.round(h.centre, 3)))
-    )
+    return sorted(map(_merge_group, groups), key=lambda h: (h.origin == "record", -round(h.width, 3), tuple(np.round(h.centre, 3))))
 
 
 def _gap(hole: OpeningEvidence, group: Sequence[OpeningEvidence]) -> float:
     """Return how far a hole is from the middle of the opening that a group shows [m]; infinite where it is none of that opening."""
     first = group[0]
-    apart = hole.centre - first.centre
-    across, along = abs(float(apart @ first.across)), abs(float(apart @ first.along))
+    along, across = map(abs, first.offset(hole.centre))
     slack = FLAT if hole.flat or first.flat else 0.0
     # how high a record's origin lies says nothing of a leaf or pane that stands in a reveal
     stacked = hole.origin == "record" or (hole.sill < first.top + slack and first.sill < hole.top + slack)
     same_wall = hole.origin == "record" or hole.flat or abs(float(hole.along @ first.along)) > 0.9
     if across < SAME and along < max(SAME, first.width / 2 - 0.1) and same_wall and stacked:
         return math.hypot(across, along)
-    if hole.origin == "record" and hole.evidence == "door" and first.origin != "record" and first.evidence != "window":
-        ends = LineString([first.centre - first.width / 2 * first.along, first.centre + first.width / 2 * first.along])
-        if ends.distance(Point(hole.centre)) < min(AJAR * first.width, FARTHEST_LEAF):
-            return math.hypot(across, along)
+    ajar = hole.origin == "record" and hole.evidence == "door" and first.origin != "record" and first.evidence != "window"
+    if ajar and LineString(first.ends).distance(Point(hole.centre)) < min(AJAR * first.width, FARTHEST_LEAF):
+        return math.hypot(across, along)
     return math.inf
 
 
@@ -90,9 +75,7 @@ def _merge_group(group: Sequence[OpeningEvidence]) -> OpeningEvidence:
         if thresholds and leaf:  # a leaf by itself: the threshold says how wide its door is
             return replace(thresholds[0], evidence=evidence, sill=leaf.sill, top=leaf.top, origin="record")
         return replace(group[0], evidence=evidence)
-    widest, best = upright[0], [h for h in upright if h.origin == upright[0].origin]
-    for hole in upright:
-        widest = hole if hole.width > widest.width else widest
+    widest, best = max(upright, key=lambda h: h.width), [h for h in upright if h.origin == upright[0].origin]
     low, high = _common([widest.span(h) for h in best])
     opening = widest
     if widest.width - (high - low) <= WIDER:
@@ -116,9 +99,8 @@ def _common(spans: list[tuple[float, float]]) -> tuple[float, float]:
 
 def _fit_depth(hole: OpeningEvidence, reveals: Sequence[OpeningEvidence]) -> OpeningEvidence:
     """Return a hole in the middle of the wall that its reveals go through together, as deep as they are."""
-    offsets = [float((h.centre - hole.centre) @ hole.across) for h in reveals]
-    low = min(o - h.depth / 2 for o, h in zip(offsets, reveals, strict=True))
-    high = max(o + h.depth / 2 for o, h in zip(offsets, reveals, strict=True))
+    low = min(hole.offset(h.centre)[1] - h.depth / 2 for h in reveals)
+    high = max(hole.offset(h.centre)[1] + h.depth / 2 for h in reveals)
     return replace(hole, centre=hole.centre + hole.across * (low + high) / 2, depth=high - low)
 
 
@@ -129,10 +111,7 @@ def _apart(holes: list[OpeningEvidence]) -> list[OpeningEvidence]:
         half = hole.width / 2
         if not hole.sized:
             for other in holes:
-                across, along = (
-                    abs(float((other.centre - hole.centre) @ hole.across)),
-                    abs(float((other.centre - hole.centre) @ hole.along)),
-                )
+                along, across = map(abs, hole.offset(other.centre))
                 if other is not hole and across < SAME and abs(float(other.along @ hole.along)) > 0.9:
                     half = min(half, (along / 2 if not other.sized else along - other.width / 2) - MULLION / 2)
         if half >= MIN_PANE / 2:  # else there is no room for it beside the other: the two are one
@@ -145,8 +124,11 @@ def jambs(narrow: Sequence[OpeningEvidence], wide: Sequence[OpeningEvidence]) ->
 
     Two narrow reveals of one kind and height are a pair when each is the other's nearest.
     """
-    standing = [h for h in wide if not h.flat]
-    tall = [h for h in narrow if h.evidence != "window" and h.top - h.sill >= JAMB_HEIGHT and not is_at_hole(h.centre, standing)]
+    tall = [
+        h
+        for h in narrow
+        if h.evidence != "window" and h.top - h.sill >= JAMB_HEIGHT and not any(w.reaches(h.centre) for w in wide if not w.flat)
+    ]
     nearest = [
         min(((_jamb_distance(a, b), k) for k, b in enumerate(tall) if b is not a), default=(math.inf, i))[1] for i, a in enumerate(tall)
     ]
@@ -169,18 +151,9 @@ def _jamb_distance(a: OpeningEvidence, b: OpeningEvidence) -> float:
     return float(np.hypot(*(a.centre - b.centre))) if alike else math.inf
 
 
-def is_at_hole(point: Floats, holes: Iterable[OpeningEvidence]) -> bool:
-    """Return whether a point (2,) lies at one of the holes, give or take SAME."""
-    for hole in holes:
-        apart = point - hole.centre
-        if abs(float(apart @ hole.along)) < hole.width / 2 + SAME and abs(float(apart @ hole.across)) < hole.depth / 2 + SAME:
-            return True
-    return False
-
-
 def bays(panes: Sequence[OpeningEvidence]) -> list[OpeningEvidence]:
     """Return windows of which only parts stand out of the wall: panes that adjoin at their corners, as one window around them."""
-    ends = [np.array([h.centre - h.width / 2 * h.along, h.centre + h.width / 2 * h.along]) for h in panes]
+    ends = [h.ends for h in panes]
     groups: list[set[int]] = []
     for i, j in itertools.combinations(range(len(panes)), 2):
         if np.hypot(*(ends[i][:, None] - ends[j][None]).reshape(-1, 2).T).min() < ADJOIN:
