@@ -86,11 +86,9 @@ def unasked(sampler: Sampler) -> Sampler:
 
 def finished(factory: Factory, drafts: Sequence[Draft]) -> Sequence[Sequence[Placement]]:
     """Return what the arranger makes of drafts."""
-    from pipeline import taxonomy
     from pipeline.homes.room_finishing import finish
 
-    f = factory
-    return [finish(d, f.library, f.index, f.learnt, f.postopt, f.verify, taxonomy.load()).placements for d in drafts]
+    return [finish(draft, factory).placements for draft in drafts]
 
 
 def drafts_of_real(factory: Factory, jobs: Sequence[RoomJob], names: Sequence[str]) -> Sequence[Draft]:
@@ -159,9 +157,9 @@ def jobs_of(source: Mapping[str, Sequence[Row]], split: str) -> dict[str, RoomJo
 def furnished(split: str) -> dict[str, Arrangement]:
     """Return the rooms of a split that are furnished, by name; furniture alone."""
     from pipeline.metrics.relations import furniture
-    from pipeline.relations import split as splits
+    from pipeline.relations.arrangement import rooms_of as read_rooms
 
-    rooms = (furniture(room) for room in splits.rooms_of(ROOT / "data" / "tables", split) if room.layout_type)
+    rooms = (furniture(room) for room in read_rooms(ROOT / "data" / "tables", split) if room.layout_type)
     return {room.name: room for room in rooms if room.categories}
 
 
@@ -206,7 +204,7 @@ def main(count: int, seeds: int) -> None:
     from pipeline.metrics.relations import compare
     from pipeline.metrics.two_samples import forest_accuracy
     from pipeline.metrics.views import features_once
-    from pipeline.relations import files
+    from pipeline.relations.model import Relations
     from schemas.openings import OPENINGS
     from schemas.rooms import ROOMS
     from schemas.scenes import SCENES
@@ -233,7 +231,7 @@ def main(count: int, seeds: int) -> None:
             rooms = rooms_of(jobs, own)
             sets.setdefault(name, []).extend(rooms)
             accuracies.setdefault(name, []).append(forest_accuracy(seed, features(truth), features(rooms), names, names)["rate"])
-    comparison = compare(np.random.default_rng(0), sets, files.load(folder / "relations.json"))
+    comparison = compare(np.random.default_rng(0), sets, Relations.load(folder / "relations.json"))
     print(f"{len(jobs)} rooms of split {SPLIT}, {seeds} seeds; share of cases in which it holds, and of the real share: {', '.join(sets)}")
     print_rates(comparison, seeds)
     print("SCA of a random forest on layout features")

@@ -21,8 +21,8 @@ def main(dataset: Path, draws: int) -> None:
     from pipeline.metrics.relations import compare
     from pipeline.metrics.two_samples import forest_accuracy, frechet, kernel_distance, linear_accuracy
     from pipeline.metrics.views import features_once
-    from pipeline.relations import files
-    from pipeline.relations.split import rooms_of
+    from pipeline.relations.arrangement import rooms_of
+    from pipeline.relations.model import Relations
 
     tables = ROOT / "data" / "tables"
     real, train = (furnished(rooms_of(tables, split)) for split in ("test", "train"))
@@ -49,9 +49,9 @@ def main(dataset: Path, draws: int) -> None:
                 figures.setdefault(f"{figure}, {name}", []).append(value)
     for name, values in sorted(figures.items()):
         print(f"  {name:28s} {np.mean(values):8.4f} +- {np.std(values):.4f}")
-    rates = compare(np.random.default_rng(0), {"real": real, "train": train, "shipped": shipped}, files.load(tables / "relations.json"))[
-        "rates"
-    ]
+    rates = compare(
+        np.random.default_rng(0), {"real": real, "train": train, "shipped": shipped}, Relations.load(tables / "relations.json")
+    )["rates"]
     print("share of cases in which it holds: real, train, shipped; shipped of real")
     for name, of in rates.items():
         in_test, in_train, in_shipped = (float(of[key]["rate"]) for key in ("real", "train", "shipped"))

@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline import tables
 from pipeline.entities.reason import Reason
-from pipeline.homes import reasons as homes
+from pipeline.homes import rows as homes
 from pipeline.homes.rows import Row
 from pipeline.sources import reasons as sources
 from schemas.rejects import REJECTS
