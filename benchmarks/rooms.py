@@ -41,12 +41,9 @@ from pipeline.metrics.layout_features import features
 from pipeline.metrics.relations import compare, furniture
 from pipeline.metrics.two_samples import forest_accuracy, frechet
 from pipeline.metrics.views import Features, features_once
-from pipeline.relations import files
-from pipeline.relations.arrangement import Arrangement, make_arrangement
-from pipeline.relations.split import rooms_of
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from pipeline.relations.arrangement import Arrangement, make_arrangement, rooms_of
+from pipeline.relations.model import Relations
+from schemas import OPENINGS, ROOMS, SCENES
 
 ROOT = Path(__file__).resolve().parents[1]
 SPLIT = "test"
@@ -88,8 +85,7 @@ def furnish_rooms(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, 
 
 def finished(factory: Factory, drafts: Sequence[Draft]) -> Furniture:
     """Return what the arranger makes of drafts."""
-    f, known = factory, taxonomy.load()
-    return [finish(d, f.library, f.index, f.learnt, f.postopt, f.verify, known).placements for d in drafts]
+    return [finish(draft, factory).placements for draft in drafts]
 
 
 def drafts_of_real(factory: Factory, jobs: Sequence[RoomJob], real: Sequence[Example]) -> list[Draft]:
@@ -193,7 +189,7 @@ def main(count: int, seeds: int) -> None:
             rooms = arrangements(jobs, own)
             sets.setdefault(name, []).extend(rooms)
             accuracies[name].append(forest_accuracy(seed, features(truth), features(rooms), names, names)["rate"])
-    comparison = compare(np.random.default_rng(0), sets, files.load(folder / "relations.json"))
+    comparison = compare(np.random.default_rng(0), sets, Relations.load(folder / "relations.json"))
     print(f"{len(jobs)} rooms of split {SPLIT}, {seeds} seeds; share of cases in which it holds, and of the real share: {', '.join(sets)}")
     print_rates(comparison, seeds)
     print("SCA of a random forest on layout features")

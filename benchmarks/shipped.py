@@ -18,8 +18,8 @@ from rooms import ROOT, print_rates
 from pipeline.experiments.realism import alike, embeddings, furnished, layout_figures, shipped_rooms
 from pipeline.metrics.relations import compare
 from pipeline.metrics.views import compare_views, features_once
-from pipeline.relations import files
-from pipeline.relations.split import rooms_of
+from pipeline.relations.arrangement import rooms_of
+from pipeline.relations.model import Relations
 
 
 def main(dataset: Path, draws: int) -> None:
@@ -45,9 +45,8 @@ def main(dataset: Path, draws: int) -> None:
     for name, values in sorted(figures.items()):
         print(f"  {name:28s} {np.mean(values):8.4f} +- {np.std(values):.4f}")
     print("share of cases in which it holds, and of the real share: real, train, shipped")
-    print_rates(
-        compare(np.random.default_rng(0), {"real": real, "train": train, "shipped": shipped}, files.load(tables / "relations.json"))
-    )
+    sets = {"real": real, "train": train, "shipped": shipped}
+    print_rates(compare(np.random.default_rng(0), sets, Relations.load(tables / "relations.json")))
 
 
 if __name__ == "__main__":

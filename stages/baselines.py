@@ -23,7 +23,7 @@ from pipeline.entry import run
 from pipeline.experiments.baselines import cases_of, compare_models
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.manifest import write_json
-from pipeline.relations import files
+from pipeline.relations.model import Relations
 
 
 def main(root: Path) -> None:
@@ -47,7 +47,7 @@ def main(root: Path) -> None:
     makers |= {"ours": partial(ours.furnish, own.sampler, "none"), "ours_guided": partial(ours.furnish, own.sampler, "heuristic")}
     cases = cases_of(getattr(job.sets, metrics.split), job.scaling.classes)
     opens = dict(zip(job.scaling.classes, job.opens.tolist(), strict=True))
-    comparison = compare_models(makers, cases, opens, settings, tree["seed"], files.load(root / "data/tables/relations.json"))
+    comparison = compare_models(makers, cases, opens, settings, tree["seed"], Relations.load(root / "data/tables/relations.json"))
     cost = {name: report(each) for name, each in trained.items()} | {"ours": own.cost}
     write_json(root / "metrics" / "baselines.json", comparison | {"trained": cost, "train_rooms": len(job.outlines)})
 

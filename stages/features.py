@@ -17,7 +17,7 @@ from pipeline.metrics.layout_features import summaries
 from pipeline.metrics.perturbations import HARMS
 from pipeline.metrics.relations import furniture
 from pipeline.metrics.views import STATES, views_of
-from pipeline.relations.split import rooms_of
+from pipeline.relations.arrangement import rooms_of
 
 ROOMS = 6000  # training rooms, each as it is and harmed
 EPOCHS = 12

@@ -24,7 +24,7 @@ from pipeline.homes.request import RoomJob
 from pipeline.homes.rows import Row
 from pipeline.manifest import write_bytes, write_json
 from pipeline.metrics.articulation import sweeps_of
-from pipeline.relations import files
+from pipeline.relations.model import Relations
 from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 
 LIVED_IN = ("living_dining_room", "living_room", "bedroom", "dining_room", "kitchen", "kids_room", "study")
@@ -66,7 +66,7 @@ def realism(root: Path, seed: int, settings: MetricsSettings, trials: Mapping[st
     """Put what was drafted for the split's floors, and what shipped, beside the rooms that stand there."""
     plain, guided = trials[paper_tables.ALL_PLAIN], trials[paper_tables.ALL_GUIDED]
     generated = {"unguided": plain.drafted, "guided": guided.drafted, "finished": guided.shipped}
-    known = files.load(root / "data" / "tables" / "relations.json")
+    known = Relations.load(root / "data" / "tables" / "relations.json")
     return realism_table(seed, beside(root, settings.split, generated), known, embeddings(settings.inception))
 
 

@@ -7,15 +7,14 @@ from pathlib import Path
 from pipeline import params
 from pipeline.entry import run
 from pipeline.execution import Progress, cores
-from pipeline.homes.draft_store import read_drafts
-from pipeline.homes.drafts import drafts_of
+from pipeline.homes.drafts import drafts_of, read_drafts
 from pipeline.homes.factory import Factory, open_factory
-from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.jit_warmup import warm_up_workers
+from pipeline.homes.planning import PlannedHome
 from pipeline.homes.production import Recipe, fill
+from pipeline.homes.prompt_mix import DatasetSettings, requests_of
 from pipeline.homes.reproduction import header_of
 from pipeline.homes.request import Request
-from pipeline.homes.settings import DatasetSettings, requests_of
 from pipeline.manifest import digest, write_json
 from pipeline.shards import open_or_create
 
@@ -41,7 +40,7 @@ def main(root: Path) -> None:
         write_json(root / "metrics" / "timing.json", costs)
 
 
-def first_drafts(root: Path, factory: Factory, requests: Sequence[Request]) -> list[HomeDraft]:
+def first_drafts(root: Path, factory: Factory, requests: Sequence[Request]) -> list[PlannedHome]:
     """Return the drafts that stage `sample` has made of these homes."""
     rows = read_drafts(root / "data" / "samples", factory.seed, [request.index for request in requests])
     return drafts_of(rows, requests, factory)

@@ -11,8 +11,8 @@ from pipeline import params
 from pipeline.entry import run
 from pipeline.errors import ContentError
 from pipeline.execution import cores
-from pipeline.relations import files, learning
-from pipeline.relations.split import rooms_of
+from pipeline.relations import learning
+from pipeline.relations.arrangement import rooms_of
 from pipeline.sources import inventory
 from pipeline.sources.registry import configured_sources
 from pipeline.sources.rows import LibraryRows
@@ -37,7 +37,7 @@ def main(root: Path) -> None:
     summary = write_houses(out, houses, library, places(used))
     library.assets += add_mirrored(root / "data" / "assets", library.assets, summary.assets)
     write_library(out, library, summary)
-    files.save(out / "relations.json", learning.fit(rooms_of(out, "train")))
+    learning.fit(rooms_of(out, "train")).save(out / "relations.json")
     sys.stdout.writelines(f"{line}\n" for line in summary.lines())
 
 

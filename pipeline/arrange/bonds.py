@@ -1,7 +1,8 @@
 """Which relations of the training tables a draft nearly holds, and the poses at which it would hold them exactly.
 
 A member is bound to the one anchor, larger than itself, whose learnt modes it is nearest to: so the bonds of a room are
-trees, with a bed, a sofa, a table at each root. The modes are those of `pipeline.relations`, as rows of numbers.
+trees, with a bed, a sofa, a table at each root. The modes are those of `pipeline.relations`, as rows of numbers. An anchor is a group
+with the members that move when it does.
 """
 
 import math
@@ -14,13 +15,15 @@ from numpy.typing import NDArray
 from pipeline.arrange.item import Item, other_wall
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.geometry.compiled import compiled
-from pipeline.relations.frames import SIDES
+from pipeline.relations.frames import REFERENCES, SIDES
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 REACH, TURN = 0.4, math.radians(30)  # how far from a mode a relation is nearly held [m, rad]
 SURE, ADOPTED = 0.7, 4.0  # who of a relation this strong is astray belongs there all the same, from this far [m]
 OVER = float(SIDES.index("over"))
+MIDDLE, LOW, _HIGH, SHARE, OUTSIDE = (float(k) for k in range(len(REFERENCES)))
 FLAT = [0, 1, 3]  # x, y, yaw of a pose
 LEVER = 0.5  # metres that a radian counts
 TIGHT = 0.5  # of a mode's spans, this share about their middles is where poses are put
@@ -108,14 +111,19 @@ def _gap(local: Floats, anchor: Item, member: Item) -> float:
 
 
 @compiled
-def _base(reference: float, own: float, other: float) -> tuple[float, float]:
-    """Return (zero [m], unit [m]) of a reference for an anchor and a member of these lengths."""
-    if reference == 3.0:
-        return 0.0, own
-    if reference == 4.0:
-        return (own + other) / 2, 1.0
-    sign = -1.0 if reference == 1.0 else 1.0 if reference == 2.0 else 0.0
-    return sign * (own - other) / 2, 1.0
+def _place(span: Floats, at: float, anchor: float, member: float) -> tuple[float, float]:
+    """Return how far [m] a member at `at` along an axis of its anchor is beyond a span, and the nearest place well within it; both are so long there."""
+    zero, unit = 0.0, 1.0
+    if span[0] == SHARE:
+        unit = anchor
+    elif span[0] == OUTSIDE:
+        zero = (anchor + member) / 2
+    elif span[0] != MIDDLE:
+        zero = (-1.0 if span[0] == LOW else 1.0) * (anchor - member) / 2
+    value = (at - zero) / unit
+    low, middle, high = span[1], span[2], span[3]
+    within = min(max(value, middle + TIGHT * (low - middle)), middle + TIGHT * (high - middle))
+    return _beyond(value, low, high) * unit, zero + unit * within
 
 
 @compiled
@@ -124,34 +132,34 @@ def _beyond(value: float, low: float, high: float) -> float:
 
 
 @compiled
+def _extents(half: Floats, turn: float) -> tuple[float, float]:
+    """Return the full extents along the anchor's axes of a box turned by `turn`."""
+    c, s = abs(math.cos(turn)), abs(math.sin(turn))
+    return 2 * (c * half[0] + s * half[1]), 2 * (s * half[0] + c * half[1])
+
+
+@compiled
 def nearest(table: Floats, anchor: Floats, half: Floats, member: Floats, own: Floats) -> Floats:
-    """Return (metres, radians off, x, y, yaw in the anchor's frame, side) of the nearest mode: what `Relations.nearest` says, tightened.
+    """Return (metres, radians off, x, y, yaw in the anchor's frame, side) of the nearest mode: as `Mode.distances` says, and the pose tightened.
 
     `anchor` and `member` are (x, y, yaw), `half` and `own` their half extents (2,) in plan.
     """
     c, s = math.cos(anchor[2]), math.sin(anchor[2])
     dx, dy = member[0] - anchor[0], member[1] - anchor[1]
-    px, py = c * dx + s * dy, c * dy - s * dx
+    place = (c * dx + s * dy, c * dy - s * dx)
     turn = (member[2] - anchor[2] + math.pi) % (2 * math.pi) - math.pi
     best = np.full(6, np.inf)
     for k in range(table.shape[0]):
         row = table[k]
         side = row[0]
-        nx = 1.0 if side == 1.0 else -1.0 if side == 3.0 else 0.0
-        ny = -1.0 if side == 0.0 else 1.0 if side in (2.0, 4.0) else 0.0
-        ax, ay = abs(ny), abs(nx)
-        looks = math.atan2(-px, py) if row[9] > 0.0 else 0.0
+        i = 0 if side in (1.0, 3.0) else 1  # the axis of the anchor that leads out of this side
+        sign = -1.0 if side in (0.0, 3.0) else 1.0
+        looks = math.atan2(-place[0], place[1]) if row[9] > 0.0 else 0.0
         off = (turn - looks - row[11] + math.pi) % (2 * math.pi) - math.pi
         radians = abs(_beyond(off, row[10], row[12]))
-        # distances with the turn as it is
-        w = abs(math.cos(turn)) * own[0] + abs(math.sin(turn)) * own[1]
-        d = abs(math.sin(turn)) * own[0] + abs(math.cos(turn)) * own[1]
-        out_own, out_other = 2 * (abs(nx) * half[0] + abs(ny) * half[1]), 2 * (abs(nx) * w + abs(ny) * d)
-        side_own, side_other = 2 * (ax * half[0] + ay * half[1]), 2 * (ax * w + ay * d)
-        zero, unit = _base(row[1], out_own, out_other)
-        out_off = _beyond((px * nx + py * ny - zero) / unit, row[2], row[4]) * unit
-        zero, unit = _base(row[5], side_own, side_other)
-        side_off = _beyond((px * ax + py * ay - zero) / unit, row[6], row[8]) * unit
+        wide = _extents(own, turn)
+        out_off, _ = _place(row[1:5], sign * place[i], 2 * half[i], wide[i])
+        side_off, _ = _place(row[5:9], place[1 - i], 2 * half[1 - i], wide[1 - i])
         metres = math.sqrt(out_off * out_off + side_off * side_off)
         if metres + LEVER * radians >= best[0] + LEVER * best[1]:
             continue
@@ -159,19 +167,11 @@ def nearest(table: Floats, anchor: Floats, half: Floats, member: Floats, own: Fl
         quarter = round(yaw / (math.pi / 2)) * (math.pi / 2)
         if row[12] - row[10] < FREELY and abs(yaw - quarter) <= SQUARE:
             yaw = quarter
-        w = abs(math.cos(yaw)) * own[0] + abs(math.sin(yaw)) * own[1]
-        d = abs(math.sin(yaw)) * own[0] + abs(math.cos(yaw)) * own[1]
-        out_other, side_other = 2 * (abs(nx) * w + abs(ny) * d), 2 * (ax * w + ay * d)
-        zero, unit = _base(row[1], out_own, out_other)
-        out = zero + unit * min(
-            max((px * nx + py * ny - zero) / unit, row[3] + TIGHT * (row[2] - row[3])), row[3] + TIGHT * (row[4] - row[3])
-        )
-        zero, unit = _base(row[5], side_own, side_other)
-        along = zero + unit * min(
-            max((px * ax + py * ay - zero) / unit, row[7] + TIGHT * (row[6] - row[7])), row[7] + TIGHT * (row[8] - row[7])
-        )
-        best[0], best[1] = metres, radians
-        best[2], best[3], best[4], best[5] = out * nx + along * ax, out * ny + along * ay, yaw, side
+        wide = _extents(own, yaw)
+        _, out = _place(row[1:5], sign * place[i], 2 * half[i], wide[i])
+        _, along = _place(row[5:9], place[1 - i], 2 * half[1 - i], wide[1 - i])
+        best[0], best[1], best[4], best[5] = metres, radians, yaw, side
+        best[2 + i], best[3 - i] = sign * out, along
     return best
 
 
@@ -196,3 +196,42 @@ def broken(
         if near[0] > most or near[1] > TURNED:
             lost.append(i)
     return lost
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Group:
+    """`members` (K,), the anchor first, and their `offsets` (K, 4) x, y, z, yaw from it in its frame."""
+
+    members: Ints
+    offsets: Floats
+
+    @property
+    def first(self) -> int:
+        """The anchor."""
+        return int(self.members[0])
+
+
+def groups(items: Sequence[Item], poses: Floats, bonds: Sequence[Bond | None], runs: Sequence[Sequence[int]] = ()) -> list[Group]:
+    """Return the groups of a room at their exact poses; `runs` are kitchen units that stand as one. Each object is in one group."""
+    root = list(range(len(items)))
+    for run in runs:
+        for i in run:
+            root[i] = run[0]
+    for i in sorted(range(len(items)), key=lambda i: (-items[i].area, i)):
+        bond = bonds[i]
+        if bond is not None and bond.rigid:
+            root[i] = root[bond.anchor]
+    by_root: dict[int, list[int]] = {}
+    for i, r in enumerate(root):
+        by_root.setdefault(r, []).append(i)
+    return [group_of([r, *(i for i in own if i != r)], poses) for r, own in by_root.items()]
+
+
+def group_of(members: Sequence[int], poses: Floats) -> Group:
+    """Return objects as a group, the first as its anchor, as they stand at `poses` (N, 4)."""
+    own = np.array(members, np.int64)
+    anchor = poses[own[0]]
+    c, s = math.cos(anchor[3]), math.sin(anchor[3])
+    apart = poses[own] - anchor
+    offsets = np.column_stack([c * apart[:, 0] + s * apart[:, 1], c * apart[:, 1] - s * apart[:, 0], apart[:, 2], apart[:, 3]])
+    return Group(own, offsets)

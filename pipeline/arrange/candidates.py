@@ -8,13 +8,12 @@ import shapely
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import mode_poses
-from pipeline.arrange.edges import Edge
 from pipeline.arrange.item import Item, other_wall, wrap_yaw, yaw_difference
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.snapping import ACROSS, FACING, height
-from pipeline.arrange.walls import at_wall, hides_window, opening_cost
+from pipeline.arrange.walls import Edge, at_wall, hides_window, opening_cost
 
 Floats = NDArray[np.float64]
 
@@ -34,13 +33,12 @@ OUT = np.array([0.0, -0.06, -0.12, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3])
 DRAWN_OUT = np.array([0.4, 0.5, 0.6])  # a chair before drawers stands clear of them [m]
 
 
-def near_by(
-    item: Item, target: Floats, walls: Sequence[Edge], neighbours: Floats, site: Site, settings: SeparateSettings
-) -> tuple[Floats, Floats]:
+def near_by(item: Item, target: Floats, neighbours: Floats, site: Site, settings: SeparateSettings) -> tuple[Floats, Floats]:
     """Return poses (C, 4) of an object about its target (4,) and along the walls, and their costs (C,), the cheapest first.
 
     `neighbours` (M, 4, 2) are the outlines of what stands, with which it may be flush.
     """
+    walls = site.walls
     candidates, costs = [target[None]], [_opening_cost(item, target[None], walls)]
     if item.mount != "wall":
         backed = item.habit.wants and _at_wall(item, target, walls)
@@ -77,25 +75,25 @@ def steps_to_walls(item: Item, across: Item, offset: Floats, walls: Sequence[Edg
     return sorted(((depth - taken, edge) for edge, depth in facing if depth > 0.0), key=lambda step: (round(abs(step[0]), 6), step[1].yaw))
 
 
-def everywhere(item: Item, target: Floats, walls: Sequence[Edge], site: Site, settings: SeparateSettings) -> tuple[Floats, Floats]:
+def everywhere(item: Item, target: Floats, site: Site, settings: SeparateSettings) -> tuple[Floats, Floats]:
     """Return a grid over the room in the four directions of its longest wall, and poses along the walls, as `near_by` does; none for what belongs to a wall."""
     if item.mount == "wall" or item.habit.must:
         return np.zeros((0, 4)), np.zeros(0)
-    base = max(walls, key=lambda edge: round(edge.length, 6)).yaw
+    base = max(site.walls, key=lambda edge: round(edge.length, 6)).yaw
     low, high = site.polygon.min(0), site.polygon.max(0)
     xs, ys = (np.arange(low[k] + GRID / 2, high[k], GRID) for k in (0, 1))
     points = np.stack(np.meshgrid(xs, ys, indexing="ij"), -1).reshape(-1, 2)
     points = points[shapely.contains_xy(shapely.Polygon(site.polygon), points[:, 0], points[:, 1])]
     yaws = np.array([wrap_yaw(float(base) + k * math.pi / 2) for k in range(4)])
     spread, turns = np.repeat(points, 4, axis=0), np.tile(yaws, len(points))
-    free, backed = _stack_poses(spread, turns, target[2]), _along_walls(item, target, walls, np.zeros((0, 4, 2)))
+    free, backed = _stack_poses(spread, turns, target[2]), _along_walls(item, target, site.walls, np.zeros((0, 4, 2)))
     cost = np.concatenate([np.linalg.norm(spread - target[:2], axis=1) + OFF_WALL * item.habit.backed, backed[1]])
     poses = np.concatenate([free, backed[0]])
     return _rank_poses(item, poses, cost + settings.turn_cost * yaw_difference(poses[:, 3], float(target[3])), site)
 
 
 def at_anchor_poses(
-    item: Item, target: Floats, anchor: Item, at: Floats, walls: Sequence[Edge], learnt: LearntRelations, settings: SeparateSettings
+    item: Item, target: Floats, anchor: Item, at: Floats, site: Site, learnt: LearntRelations, settings: SeparateSettings
 ) -> tuple[Floats, Floats]:
     """Return poses of a member in every mode at its anchor, which stands at `at` (4,), and a little along and out of them.
 
@@ -104,7 +102,7 @@ def at_anchor_poses(
     modes = mode_poses(anchor, at, item, target, learnt)
     if item.habit.must:
         across = [
-            at_wall(item, np.insert(m, 2, target[2]), walls, ACROSS, settings.turn_cost, FACING) if other_wall(m[2] - at[3]) else m
+            at_wall(item, np.insert(m, 2, target[2]), site.walls, ACROSS, settings.turn_cost, FACING) if other_wall(m[2] - at[3]) else m
             for m in modes
         ]
         modes = np.array([m[[0, 1, -1]] for m in across if m is not None]).reshape(-1, 3)
@@ -160,9 +158,9 @@ def _at_wall(item: Item, pose: Floats, walls: Sequence[Edge]) -> bool:
     return any(yaw_difference(edge.yaw, float(pose[3])) < 0.1 and abs(float(edge.off(back))) <= 2 * item.habit.gap[2] for edge in walls)
 
 
-def hides(item: Item, pose: Floats, walls: Sequence[Edge]) -> bool:
+def hides(item: Item, pose: Floats, site: Site) -> bool:
     """Whether an object at a pose (4,) hides a window, or leans on a wall that is not there."""
-    return bool(_opening_cost(item, pose[None], walls)[0] > 0.0)
+    return bool(_opening_cost(item, pose[None], site.walls)[0] > 0.0)
 
 
 def _opening_cost(item: Item, poses: Floats, walls: Sequence[Edge]) -> Floats:

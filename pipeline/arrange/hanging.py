@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.edges import Edge, EdgeOpening, edges_of
+from pipeline.arrange.walls import Edge, EdgeOpening, edges_of
 from pipeline.entities.plan import Opening
 
 Floats = NDArray[np.float64]

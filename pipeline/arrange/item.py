@@ -40,6 +40,16 @@ class Item:
         return self.habit.mount
 
     @property
+    def width(self) -> float:
+        """Its full extent across its front [m]."""
+        return 2 * float(self.half[0])
+
+    @property
+    def depth(self) -> float:
+        """Its full extent from front to back [m]."""
+        return 2 * float(self.half[1])
+
+    @property
     def area(self) -> float:
         """The area of its box in plan [m2]; what hangs takes none."""
         return 4.0 * float(self.half[0] * self.half[1]) if self.habit.mount == "floor" else 0.0

@@ -88,7 +88,7 @@ def _habit(category: str, known: Relations) -> Habit:
     if mount == "ceiling":
         return Habit(mount, 0.0, GAP, "", kind)
     back = next((w for w in known.walls.get(category, ()) if w.side == "back"), None)
-    learnt = category in known.walls or bool(known.anchors(category))
+    learnt = category in known.walls or any(member == category for _, member in known.pairs)
     share = back.share if back is not None else 0.0 if learnt else UNKNOWN
     gap = GAP
     if back is not None:  # some of them stand away from the wall; whoever goes to it goes as near as most do

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.groups import Group
+from pipeline.arrange.bonds import Group
 from pipeline.arrange.item import Item
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
@@ -100,13 +100,10 @@ class Occupancy:
                 self.stand(group, poses[k])
                 unreached = self.out_of_reach()
                 self.leave(group)
-                total = (
-                    np.inf
-                    if unreached is None
-                    else float(totals[k]) + sum(OUT_OF_REACH[i in self.bound] for i in unreached - self.unreached)
-                )
-                if unreached is not None and (best is None or total < best.cost):
-                    best = Place(poses[k], total, unreached)
+                if unreached is not None:
+                    total = float(totals[k]) + sum(OUT_OF_REACH[i in self.bound] for i in unreached - self.unreached)
+                    if best is None or total < best.cost:
+                        best = Place(poses[k], total, unreached)
                 if unreached == self.unreached:
                     break
                 failed.append([x, y, yaw])
@@ -134,19 +131,9 @@ class Occupancy:
         return frozenset(i for i in there if i in self.unreached or not self._usable(i, space, label))
 
     def _totals(self, group: Group, poses: Floats, costs: Floats, start: int, others: NDArray[np.bool_]) -> tuple[Floats, int]:
-        settings = self.settings
-        return free_poses(
-            self.world,
-            group.members,
-            group.offsets,
-            poses,
-            costs,
-            start,
-            settings.candidates,
-            others,
-            settings.touch,
-            (settings.access_cost, settings.nearness_cost),
-        )
+        s = self.settings
+        soft = s.access_cost, s.nearness_cost
+        return free_poses(self.world, group.members, group.offsets, poses, costs, start, s.candidates, others, s.touch, soft)
 
     def _bodies(self) -> Prisms:
         """Return the bodies of what stands."""

@@ -7,9 +7,9 @@ is started over with an eye on the floor at every step, those first that found n
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import REACH, Bond, broken
 from pipeline.arrange.item import Item, make_item
@@ -17,7 +17,7 @@ from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
 from pipeline.arrange.runs import base_units, lay_runs, stray_units
 from pipeline.arrange.settings import SeparateSettings
-from pipeline.arrange.settling import Draft, settle_all
+from pipeline.arrange.settling import Settling
 from pipeline.arrange.site import Site
 from pipeline.arrange.snapping import exact_poses
 from pipeline.entities.asset import Asset
@@ -64,8 +64,9 @@ def separate(
     `smaller` finds smaller assets for what does not fit; with `keep_count` nothing that has a place is left out for standing astray.
     """
     settings = settings or SeparateSettings()
-    asked = [make_item(p, assets, learnt, settings.access_depth) for p in placements]
-    items = list(asked)
+    make = partial(make_item, assets=assets, learnt=learnt, access_depth=settings.access_depth)
+    shrink = partial(_smaller_item, assets=assets, make=make, smaller=smaller or (lambda _asset_id, _area: None))
+    items = [make(p) for p in placements]
     distances = learnt.distances([item.placement.category for item in items])
     losses = [0] * len(items)
     first: list[int] = []
@@ -75,7 +76,14 @@ def separate(
     unreached: frozenset[int] = frozenset()
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
-        occupancy, sound, bonds, runs = _arrange_once(site, items, first, led, learnt, distances, settings, number)
+        runs, laid = lay_runs(items, site)
+        poses, bonds = exact_poses(items, site, learnt, settings, laid)
+        occupancy = Occupancy(site, items, settings, distances, [i for i, bond in enumerate(bonds) if bond is not None])
+        Settling(occupancy, poses, bonds, runs, learnt, led, careful=number > 0).settle_all(first, bulk=number <= 1)
+        sound = True
+        if number == 0:  # later the floor has been looked at for each group
+            missed = occupancy.out_of_reach()
+            sound, occupancy.unreached = missed is not None, missed or frozenset()
         apart = broken(bonds, items, occupancy.poses, occupancy.there, learnt)
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
@@ -90,14 +98,14 @@ def separate(
         if sound and not (lost or apart or hidden or wide):
             break
         led = frozenset(apart)
-        if wide and smaller is not None:  # no order of placing makes a wall longer: its cabinets get narrower
-            _exchange(items, [i for i in base_units(items) if items[i].habit.kind == "kitchen"], assets, learnt, settings, smaller)
+        if wide:  # no order of placing makes a wall longer: its cabinets get narrower
+            _exchange(items, [i for i in base_units(items) if items[i].habit.kind == "kitchen"], shrink)
         if number and smaller is not None:
             for i in (*lost, *apart):
                 losses[i] += 1
             # To be the first and still find no place, or none at the anchor, is to be too large.
             crowded = [i for i in (*lost, *apart) if losses[i] > (i in lost)]
-            changed = _exchange(items, crowded, assets, learnt, settings, smaller)
+            changed = _exchange(items, crowded, shrink)
             if not (lost or changed or hidden or wide):
                 break
         first = [
@@ -108,7 +116,7 @@ def separate(
         ]
     for i in () if keep_count else astray:
         del best[i]
-    return _outcome(asked, best, unreached)
+    return _outcome(placements, best, unreached)
 
 
 def _only_there(items: Sequence[Item], bond: Bond | None, i: int, learnt: LearntRelations) -> bool:
@@ -119,33 +127,9 @@ def _only_there(items: Sequence[Item], bond: Bond | None, i: int, learnt: Learnt
     return pair is not None and pair.share >= ALWAYS
 
 
-def _arrange_once(
-    site: Site,
-    items: list[Item],
-    first: Sequence[int],
-    led: Collection[int],
-    learnt: LearntRelations,
-    distances: NDArray[np.float64],
-    settings: SeparateSettings,
-    number: int,
-) -> tuple[Occupancy, bool, list[Bond | None], list[list[int]]]:
-    """Arrange a room once; return who stands where, whether the floor is sound (looked at for each group after round 0), the bonds, the kitchen runs."""
-    walls = site.walls
-    runs, laid = lay_runs(items, walls, site)
-    poses, bonds = exact_poses(items, site, walls, learnt, settings, laid)
-    occupancy = Occupancy(site, items, settings, distances, [i for i, bond in enumerate(bonds) if bond is not None])
-    settle_all(occupancy, Draft(poses, bonds, runs, walls, learnt, led), first, careful=number > 0, bulk=number <= 1)
-    if number > 0:
-        return occupancy, True, bonds, runs
-    unreached = occupancy.out_of_reach()
-    occupancy.unreached = unreached or frozenset()
-    return occupancy, unreached is not None, bonds, runs
-
-
-def _outcome(asked: Sequence[Item], best: Mapping[int, Placement], unreached: Collection[int]) -> Separated:
+def _outcome(asked: Sequence[Placement], best: Mapping[int, Placement], unreached: Collection[int]) -> Separated:
     rejects: list[Reject] = []
-    for i, item in enumerate(asked):
-        what = item.placement
+    for i, what in enumerate(asked):
         if i not in best:
             rejects.append(Reject(what.object_id, "unplaceable", f"no free place for {what.category}"))
         elif best[i].asset_id != what.asset_id:
@@ -172,33 +156,23 @@ def _score(placed: Mapping[int, Placement], items: Sequence[Item], faults: float
     return round(lost + faults, 6), round(moved, 6)
 
 
-def _exchange(
-    items: list[Item],
-    crowded: Sequence[int],
-    assets: Mapping[str, Asset],
-    learnt: LearntRelations,
-    settings: SeparateSettings,
-    smaller: Smaller,
-) -> bool:
+def _exchange(items: list[Item], crowded: Sequence[int], shrink: Callable[[Item], Item | None]) -> bool:
     """Exchange objects for smaller assets, and with each all that are of one model with it; tell whether any was."""
     changed = False
     for name in sorted({items[i].placement.asset_id for i in crowded}):
-        alike = [i for i, item in enumerate(items) if item.placement.asset_id == name]
-        replacements = {i: _smaller_item(items[i], assets, learnt, settings, smaller) for i in alike}
-        for i, item in replacements.items():
-            items[i] = item or items[i]
-            changed |= item is not None
+        for i in [i for i, item in enumerate(items) if item.placement.asset_id == name]:
+            if (smaller := shrink(items[i])) is not None:
+                items[i], changed = smaller, True
     return changed
 
 
-def _smaller_item(
-    item: Item, assets: Mapping[str, Asset], learnt: LearntRelations, settings: SeparateSettings, smaller: Smaller
-) -> Item | None:
+def _smaller_item(item: Item, assets: Mapping[str, Asset], make: Callable[[Placement], Item], smaller: Smaller) -> Item | None:
     """Return the item as a smaller asset of its category, by at least a tenth, wished where it was; None if there is none."""
     now = item.placement
     match = smaller(now.asset_id, 0.9 * float(now.size[0] * now.size[1]))
     if match is None:
         return None
     size = assets[match.asset_id].size * match.scale
-    now = replace(now, asset_id=match.asset_id, size=size, scale=match.scale, retrieval_distance=match.distance)
-    return replace(make_item(now, assets, learnt, settings.access_depth), wished=item.wished)
+    return replace(
+        make(replace(now, asset_id=match.asset_id, size=size, scale=match.scale, retrieval_distance=match.distance)), wished=item.wished
+    )

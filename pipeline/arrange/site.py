@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.edges import Edge, edges_of
+from pipeline.arrange.walls import Edge, edges_of
 from pipeline.entities.plan import Plan
 from pipeline.geometry.door_sweeps import leaf_sweep, shut_leaf
 from pipeline.geometry.free_space import PASSABLE, Floor, FreeSpace, bare_floor, free_space
@@ -70,10 +70,6 @@ class Site:
         """Find where the robot can stand with these obstacles in the room."""
         return free_space(self.floor, obstacles, self.robot.radius, self.robot.band(self.elevation))
 
-    def door_labels(self, space: FreeSpace) -> list[int]:
-        """Return per opening the label of the free part that it opens to, 0 where the robot cannot stand in it."""
-        return [space.label_near(door, NEAR_DOOR) for door in self.doors]
-
     def gate(self, space: FreeSpace) -> tuple[int, int]:
         """Return the label of the free part that most doors open to (the largest of equals), and how many do.
 
@@ -81,7 +77,7 @@ class Site:
         """
         if not len(self.doors):
             return space.largest_label(self.floor.room >= 0), 0
-        near = self.door_labels(space)
+        near = [space.label_near(door, NEAR_DOOR) for door in self.doors]  # 0 where the robot cannot stand in it
         votes = sorted({label for label in near if label}, key=lambda label: (-near.count(label), label))
         if not votes:
             return 0, 0

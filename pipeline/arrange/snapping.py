@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, at_anchor, find_bond
-from pipeline.arrange.edges import Edge
 from pipeline.arrange.item import Item
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
@@ -24,7 +23,7 @@ ON_TOP = 0.4  # what is drafted this near to the top of what it is bound over st
 
 
 def exact_poses(
-    items: Sequence[Item], site: Site, walls: Sequence[Edge], learnt: LearntRelations, settings: SeparateSettings, fixed: dict[int, Floats]
+    items: Sequence[Item], site: Site, learnt: LearntRelations, settings: SeparateSettings, fixed: dict[int, Floats]
 ) -> tuple[Floats, list[Bond | None]]:
     """Return the exact pose (N, 4) of each object and its bond; `fixed` are poses that stand already, of kitchen units.
 
@@ -36,18 +35,16 @@ def exact_poses(
         if i in fixed:
             poses[i] = fixed[i]
             continue
-        for wished in (items[i].wished, _alone(items[i], site, walls, settings)):  # who has come to a wall may find its anchor there
+        for wished in (items[i].wished, _alone(items[i], site, settings)):  # who has come to a wall may find its anchor there
             bond = find_bond(i, items, wished, poses, learnt)
-            pose = None if bond is None else _pose_at_anchor(items[i], bond, items, poses, site, walls, settings)
+            pose = None if bond is None else _pose_at_anchor(items[i], bond, items, poses, site, settings)
             bonds[i], poses[i] = (bond, wished) if pose is None else (bond, pose)
             if pose is not None:
                 break
     return poses, bonds
 
 
-def _pose_at_anchor(
-    item: Item, bond: Bond, items: Sequence[Item], poses: Floats, site: Site, walls: Sequence[Edge], settings: SeparateSettings
-) -> Floats | None:
+def _pose_at_anchor(item: Item, bond: Bond, items: Sequence[Item], poses: Floats, site: Site, settings: SeparateSettings) -> Floats | None:
     """Return the pose at the anchor, the back at the wall where it belongs to one; None where no wall is where its anchor wants it."""
     x, y, yaw = at_anchor(poses[bond.anchor], bond.local)
     pose = np.array([x, y, height(item, site, float(item.wished[2])), yaw])
@@ -60,8 +57,8 @@ def _pose_at_anchor(
     if item.mount != "floor" or not item.habit.must:
         return pose
     if not bond.rigid:
-        return at_wall(item, pose, walls, ACROSS, settings.turn_cost, FACING)
-    flush = at_wall(item, pose, walls, LOOSE, settings.turn_cost)
+        return at_wall(item, pose, site.walls, ACROSS, settings.turn_cost, FACING)
+    flush = at_wall(item, pose, site.walls, LOOSE, settings.turn_cost)
     if flush is None:
         return pose
     back = np.array([-math.sin(flush[3]), math.cos(flush[3])])
@@ -69,9 +66,9 @@ def _pose_at_anchor(
     return np.array([*(pose[:2] + depth * back), pose[2], flush[3]])  # beside its anchor, even where the wall ends: then the group moves
 
 
-def _alone(item: Item, site: Site, walls: Sequence[Edge], settings: SeparateSettings) -> Floats:
+def _alone(item: Item, site: Site, settings: SeparateSettings) -> Floats:
     """Return the pose of an object that is bound to none: at the nearest wall if it belongs to one, else square to the walls if nearly so."""
-    pose = item.wished.copy()
+    pose, walls = item.wished.copy(), site.walls
     pose[2] = height(item, site, float(pose[2]))
     if item.habit.wants:
         reach = FAR if item.habit.must else settings.wall_reach

@@ -43,12 +43,7 @@ class Surfaces:
 
 @cached_on_asset
 def surfaces(asset: Asset) -> Surfaces:
-    """Return an asset's surfaces. They depend on the asset alone and are kept while the process lives."""
-    return make_surfaces(asset)
-
-
-def make_surfaces(asset: Asset) -> Surfaces:
-    """Compute the surfaces of an asset: of its base, and of drawers that slide out of it."""
+    """Return the surfaces of an asset: of its base, and of drawers that slide out of it. They are kept while the process lives."""
     drawers = {j.child for j in asset.joints if j.part_class == DRAWER and j.parent == 0 and abs(float(j.axis[2])) < 0.1}
     rest = solid(asset).rest
     flat = rest.boxes()

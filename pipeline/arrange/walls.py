@@ -1,16 +1,19 @@
-"""Standing at walls: poses with the back to them, and what openings cost there."""
+"""The walls of a room: the edges of its polygon, the openings in them; poses with the back to them, and what openings cost there."""
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrange.edges import Edge, EdgeOpening
 from pipeline.arrange.item import Item, wrap_yaw, yaw_difference
+from pipeline.entities.plan import Opening
 
 Floats = NDArray[np.float64]
 
+WALL = 0.3  # an opening's segment is at most this far from the faces of its wall [m]
+LEAST = 0.05  # of an opening that lies in a wall [m]
 OVERHANG = 0.05  # an object may stand this far before an opening at no cost [m]
 BEFORE_WINDOW = 1.5  # cost of hiding a window behind something high [m]
 BEFORE_HOLE = 0.8  # cost of leaning on a wall that is not there [m]
@@ -20,6 +23,63 @@ TOUCHING = 0.1  # a side this near to a wall is meant to be at it [m]
 SQUARELY = 0.99  # cosine of the angle at which a side faces a wall
 ANY_WALL = math.radians(100)  # a turn that goes on to the next wall, not to the one behind
 FAR = 1.0  # what belongs to a wall is put to one that is no farther; what would rather, within the wall_reach of the settings [m]
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeOpening:
+    """An opening in one edge of a room: from `start` to `end` [m along the edge], `sill` to `head` [m above the floor]."""
+
+    start: float
+    end: float
+    sill: float
+    head: float
+    window: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A wall: it starts at `start` (2,) and goes along the unit vector `along` (2,); the room lies on `inward` (2,)."""
+
+    start: Floats
+    along: Floats
+    inward: Floats
+    length: float
+    yaw: float  # of an object that has its back to it [rad]
+    openings: tuple[EdgeOpening, ...]
+
+    def pose(self, s: float, off: float, z: float) -> Floats:
+        """Return the pose of an object whose middle is `s` along the wall and `off` before it [m]."""
+        x, y = self.start + s * self.along + off * self.inward
+        return np.array([x, y, z, self.yaw])
+
+    def along_of(self, points: Floats) -> Floats:
+        """Return how far along the wall points (..., 2) lie [m]."""
+        s: Floats = (points - self.start) @ self.along
+        return s
+
+    def off(self, points: Floats) -> Floats:
+        """Return how far before the wall points (..., 2) lie [m]."""
+        off: Floats = (points - self.start) @ self.inward
+        return off
+
+
+def edges_of(polygon: Floats, openings: Sequence[Opening]) -> list[Edge]:
+    """Return the walls of a room polygon (n, 2), counter-clockwise."""
+    walls = []
+    for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+        length = math.hypot(*(b - a))
+        t = (b - a) / max(length, 1e-9)
+        edge = Edge(a, t, np.array([-t[1], t[0]]), length, wrap_yaw(math.atan2(-t[1], -t[0])) + 0.0, ())
+        walls.append(replace(edge, openings=tuple(own for o in openings if (own := _opening_in(edge, o)) is not None)))
+    return walls
+
+
+def _opening_in(edge: Edge, opening: Opening) -> EdgeOpening | None:
+    """Return an opening as it lies in a wall, None for one of another."""
+    s, off = edge.along_of(opening.segment), np.abs(edge.off(opening.segment))
+    if off.max() >= WALL or min(edge.length, s.max()) - max(0.0, s.min()) <= LEAST:
+        return None
+    return EdgeOpening(float(s.min()), float(s.max()), opening.sill, opening.sill + opening.height, opening.kind == "window")
 
 
 def hides_window(item: Item, opening: EdgeOpening) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.shapes import Shape
-from pipeline.geometry.compiled import borrowing
+from pipeline.geometry.compiled import borrowing, compiled
 from pipeline.geometry.contact import depth
 from pipeline.geometry.polygons import beyond
 from pipeline.geometry.prisms import Prisms, join_prisms
@@ -23,16 +23,18 @@ FREE, WALL, DOOR = -1, -2, -3  # what blocks an object, beside another's index
 
 
 class World(NamedTuple):
-    """N objects of P prisms. `start` (N, 4): bodies from start[i, 0], keeps from start[i, 1], access places from start[i, 2] to start[i, 3].
+    """N objects and the doors of their room, of P prisms. `start` (N, 4): bodies from start[i, 0], keeps from start[i, 1], access places from start[i, 2] to start[i, 3].
 
+    `doors` (3,): what doors sweep from doors[0], what they take closed from doors[1] to doors[2]; it stays where it is.
     `corners` (P, V, 2), `corner_count` (P,), `z` (P, 2) and `shell` (N, S, 2), `shell_count` (N,) (the body's hull in plan) are in the object's frame;
     `at`, `at_z`, `flat` (P, 4), `box` and, without keeps and access places, `body` (N, 4) are where it was placed last [m].
     `distances` (N, N) is how far each keeps from each [m], 0 where it does not matter.
-    The room: `door`, `door_count`, `door_z`, `door_flat` are what its doors sweep, from `shut` (1,) on what they take closed; `polygon` (n, 2), `ceiling` (1,) [m].
+    The room: `polygon` (n, 2), `ceiling` (1,) [m].
     `outline` (S, 2) and `wall` (4, 2) are scratch.
     """
 
     start: Ints
+    doors: Ints
     corners: Floats
     corner_count: Ints
     z: Floats
@@ -44,11 +46,6 @@ class World(NamedTuple):
     box: Floats
     body: Floats
     distances: Floats
-    door: Floats
-    door_count: Ints
-    door_z: Floats
-    door_flat: Floats
-    shut: Ints
     polygon: Floats
     ceiling: Floats
     outline: Floats
@@ -61,30 +58,26 @@ def make_world(shapes: Sequence[Shape], swung: Prisms, shut: Prisms, polygon: Fl
     sizes = np.array([len(g) for g in groups], np.int64).reshape(-1, 3)
     ends = np.cumsum(sizes.ravel()).reshape(-1, 3)
     start = np.column_stack([ends[:, 0] - sizes[:, 0], ends]) if len(shapes) else np.zeros((0, 4), np.int64)
-    every, doors = join_prisms(groups), join_prisms([swung, shut])
+    every, last = join_prisms([*groups, swung, shut]), int(sizes.sum())
     most = max((len(s.outline) for s in shapes), default=1)
     shell = np.zeros((len(shapes), most, 2))
     for i, s in enumerate(shapes):
         shell[i, : len(s.outline)] = s.outline
-    corners = np.ascontiguousarray(every.corners)
+    corners, z = np.ascontiguousarray(every.corners), np.ascontiguousarray(every.z)
     return World(
         start,
+        np.array([last, last + len(swung), len(every)], np.int64),
         corners,
         every.count,
-        np.ascontiguousarray(every.z),
+        z,
         shell,
         np.array([len(s.outline) for s in shapes], np.int64),
-        np.zeros_like(corners),
-        np.zeros((len(every), 2)),
-        np.zeros((len(every), 4)),
+        corners.copy(),
+        z.copy(),
+        every.boxes(),
         np.zeros((len(shapes), 4)),
         np.tile([np.inf, np.inf, -np.inf, -np.inf], (len(shapes), 1)),
         distances,
-        np.ascontiguousarray(doors.corners),
-        doors.count,
-        np.ascontiguousarray(doors.z),
-        doors.boxes(),
-        np.array([len(swung)]),
         polygon,
         np.array([ceiling]),
         np.zeros((most, 2)),
@@ -141,21 +134,6 @@ def meet(world: World, a0: int, a1: int, b0: int, b1: int, tolerance: float) -> 
 
 
 @borrowing
-def meets_door(world: World, a0: int, a1: int, first: int, tolerance: float) -> bool:
-    """Tell whether any of the placed prisms a0 .. a1 - 1 is in one of the doors' from `first` on."""
-    flat, at_z = world.flat, world.at_z
-    for j in range(first, world.door_count.shape[0]):
-        for i in range(a0, a1):
-            if min(flat[i, 2], world.door_flat[j, 2]) - max(flat[i, 0], world.door_flat[j, 0]) <= tolerance:
-                continue
-            if min(flat[i, 3], world.door_flat[j, 3]) - max(flat[i, 1], world.door_flat[j, 1]) <= tolerance:
-                continue
-            if depth(world.at[i, : world.corner_count[i]], at_z[i], world.door[j, : world.door_count[j]], world.door_z[j]) > tolerance:
-                return True
-    return False
-
-
-@borrowing
 def collide(world: World, i: int, j: int, tolerance: float) -> bool:
     """Tell whether two placed objects break a hard rule: a body in the other's body or where its parts move."""
     a, b, box, flat = world.start[i], world.start[j], world.box, world.flat
@@ -183,7 +161,8 @@ def blocker(world: World, i: int, others: NDArray[np.bool_], tolerance: float) -
     for k in range(a[1], a[2]):
         if beyond(world.at[k, : world.corner_count[k]], world.polygon, world.wall) > tolerance:
             return WALL
-    if meets_door(world, a[0], a[1], 0, tolerance) or meets_door(world, a[1], a[2], world.shut[0], tolerance):
+    doors = world.doors
+    if meet(world, a[0], a[1], doors[0], doors[2], tolerance) or meet(world, a[1], a[2], doors[1], doors[2], tolerance):
         return DOOR
     for j in range(others.shape[0]):
         if others[j] and j != i and collide(world, i, j, tolerance):
@@ -221,30 +200,20 @@ def shortfall(world: World, i: int, j: int) -> float:
     return float(max(0.0, wanted - math.sqrt(x * x + y * y)))
 
 
+@compiled
 def conflicts(world: World, poses: Floats, tolerance: float) -> tuple[NDArray[np.bool_], NDArray[np.bool_], Ints]:
     """Place all N objects; return which pairs (N, N) break a hard rule, which are too near to each other, and of each (N,) whether WALL or DOOR is in its way, else FREE."""
     n = poses.shape[0]
-    pairs, near = np.zeros((n, n), np.bool_), np.zeros((n, n), np.bool_)
+    pairs, near, nobody = np.zeros((n, n), np.bool_), np.zeros((n, n), np.bool_), np.zeros(n, np.bool_)
     alone = np.full(n, FREE)
-    _conflicts(world, poses, tolerance, np.zeros(n, np.bool_), pairs, near, alone)
-    return pairs, near, alone
-
-
-@borrowing
-def _conflicts(
-    world: World, poses: Floats, tolerance: float, nobody: NDArray[np.bool_], pairs: NDArray[np.bool_], near: NDArray[np.bool_], alone: Ints
-) -> None:
-    """Write `pairs` and `near` (N, N), and `alone` (N,)."""
-    n = poses.shape[0]
     for i in range(n):
         put(world, i, poses[i])
         alone[i] = WALL if leaves_room(world, i, poses[i], tolerance) else blocker(world, i, nobody, tolerance)
     for i in range(n):
         for j in range(i):
-            pairs[i, j] = collide(world, i, j, tolerance)
-            pairs[j, i] = pairs[i, j]
-            near[i, j] = shortfall(world, i, j) > NEARER
-            near[j, i] = near[i, j]
+            pairs[i, j] = pairs[j, i] = collide(world, i, j, tolerance)
+            near[i, j] = near[j, i] = shortfall(world, i, j) > NEARER
+    return pairs, near, alone
 
 
 @borrowing
@@ -257,39 +226,22 @@ def compose_pose(pose: Floats, offset: Floats, out: Floats) -> None:
     out[3] = (pose[3] + offset[3] + math.pi) % (2 * math.pi) - math.pi
 
 
+@compiled
 def free_poses(
-    world: World,
-    members: Ints,
-    offsets: Floats,
-    poses: Floats,
-    costs: Floats,
-    first: int,
-    wanted: int,
-    others: NDArray[np.bool_],
-    tolerance: float,
-    soft: tuple[float, float],
-) -> tuple[Floats, int]:
+    world: World, members: Ints, offsets: Floats, poses: Floats, costs: Floats, first: int, wanted: int, others: NDArray[np.bool_],
+    tolerance: float, soft: tuple[float, float],
+) -> tuple[Floats, int]:  # fmt: skip
     """Return the cost (C,) of poses of a group from `first` on, inf where not free, until `wanted` are found; and where it stopped.
 
     `members` (K,) move as one, at `offsets` (K, 4) from the group's pose; `others` (N,) are the objects that stand. Poses are
     given in ascending order of `costs`, to which the soft rules add: `soft` are the cost of each access place taken and of a metre too near [m].
     """
-    totals = np.full(poses.shape[0], np.inf)
-    own = np.empty((members.shape[0], 4))
-    return totals, int(_free_poses(world, members, offsets, poses, costs, first, wanted, others, tolerance, soft, own, totals))
-
-
-@borrowing
-def _free_poses(
-    world: World, members: Ints, offsets: Floats, poses: Floats, costs: Floats, first: int, wanted: int, others: NDArray[np.bool_],
-    tolerance: float, soft: tuple[float, float], own: Floats, found: Floats,
-) -> int:  # fmt: skip
-    """Write the costs to `found` (C,), return where it stopped; `own` (K, 4) is scratch."""
+    found, own = np.full(poses.shape[0], np.inf), np.empty((members.shape[0], 4))
     have = 0
     last = FREE  # what was in the way of the pose before is likely to be in the way of this one
     for k in range(first, poses.shape[0]):
         if have >= wanted:
-            return k
+            return found, k
         free = True
         for m in range(members.shape[0]):
             compose_pose(poses[k], offsets[m], own[m])
@@ -315,4 +267,4 @@ def _free_poses(
                     missing = max(missing, shortfall(world, members[m], j))
         found[k] = costs[k] + soft[0] * broken + soft[1] * missing
         have += 1
-    return len(poses)
+    return found, len(poses)

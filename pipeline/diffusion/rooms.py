@@ -14,11 +14,7 @@ from pipeline.diffusion.codec import CHANNELS, LATENT
 from pipeline.diffusion.context import RoomContext, RoomOpening
 from pipeline.diffusion.floor import Floor, floor_tokens
 from pipeline.errors import ContentError
-from schemas.assets import ASSET_JOINTS, LATENTS
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import ASSET_JOINTS, LATENTS, OBJECTS, OPENINGS, ROOMS, SCENES
 
 Row = Mapping[str, Any]
 SWEEPS = 4  # boxes per object

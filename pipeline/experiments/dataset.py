@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from pipeline import tables
-from pipeline.homes import reasons as homes
+from pipeline.homes import rows as homes
 from pipeline.homes.rows import Row
 from pipeline.sources import reasons as sources
 from schemas import REJECTS, ROOMS, SCENES

@@ -18,9 +18,8 @@ from pipeline.metrics.perturbations import HARMS, Harm, spoilt
 from pipeline.metrics.relations import compare, furniture
 from pipeline.metrics.two_samples import forest_accuracy, frechet
 from pipeline.metrics.views import STATES, Embed, Features, compare_views, features_once
-from pipeline.relations.arrangement import Arrangement, from_rows
+from pipeline.relations.arrangement import Arrangement, from_rows, rooms_of
 from pipeline.relations.model import Relations
-from pipeline.relations.split import rooms_of
 from schemas import OBJECTS, OPENINGS, ROOMS
 
 Json = dict[str, Any]

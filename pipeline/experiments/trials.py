@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from pipeline import taxonomy
 from pipeline.diffusion.settings import Articulation
 from pipeline.entities.home import Placement
 from pipeline.experiments.rooms import room_home
@@ -85,7 +84,7 @@ def _finish_rooms(factory: Factory, asked: Sequence[Draft], drafts: Drafts) -> t
     pending = list(enumerate(asked))
     while pending:
         for i, draft in pending:
-            result = finish(draft, factory.library, factory.index, factory.learnt, factory.postopt, factory.verify, taxonomy.load())
+            result = finish(draft, factory)
             best[i] = rooms[i].keep(_drop_violations(factory, result))
             first.setdefault(i, best[i])
         failed = [i for i, _ in pending if best[i].failure and rooms[i].again(factory.shard.room_attempts)]
@@ -100,7 +99,7 @@ def _drop_violations(factory: Factory, result: RoomResult) -> RoomResult:
         violating = violations(home, verify_home(home, factory.library, factory.verify))
         if not violating:
             return result
-        result = result.without(violating, taxonomy.load())
+        result = result.without(violating)
 
 
 def _rows(factory: Factory, rooms: Sequence[tuple[Draft, Sequence[Placement]]]) -> dict[str, list[Row]]:

@@ -2,18 +2,20 @@
 
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import taxonomy
-from pipeline.arrange import Hanging, Laying, ThingsSettings, lay_rug
-from pipeline.arrange.edges import EdgeOpening
+from pipeline.arrange import Hanging, Laying, ThingsSettings
+from pipeline.arrange.walls import EdgeOpening
 from pipeline.card import Hangs, cards
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
+from pipeline.geometry.convex import gap
 from pipeline.geometry.door_sweeps import leaf_sweep
+from pipeline.geometry.polygons import excess
 from pipeline.geometry.prisms import join_prisms, solid
 from pipeline.geometry.walls import leaves
 from pipeline.homes.library import Library
@@ -32,6 +34,9 @@ MOST_IN_ROW = 3
 STANDS_ON_RUGS = frozenset({"bed", "table", "chair", "stool", "sofa"})  # super-categories that may stand on a rug, wholly or in part
 UNDER_BED = (0.05, 0.25)  # how far the middle of a rug lies within a bed's foot, as a share of the bed's depth
 RUGS_TRIED = 3  # the largest of so many is laid
+THICK = 0.004  # a flat weave: furniture stands on it without being lifted, robots and doors pass over it [m]
+EDGE = 0.08  # least distance of a rug from the walls [m]
+SHARES = (1.15, 1.0, 0.85, 0.7)  # shares of its size in which a rug is tried
 
 
 def small_things(home: Home, library: Library, settings: ThingsSettings, rng: np.random.Generator, touch: float) -> tuple[Placement, ...]:
@@ -204,3 +209,23 @@ class _Dressing:
                 place = laying.lay(self.rng, self.library[asset_id], number, facing=facing, centred=centred, backed=backed)
                 if place is not None:
                     self._add(category, asset_id, *place, support=support.object_id)
+
+
+def lay_rug(
+    polygon: Floats, size: Floats, places: Sequence[tuple[float, float, float]], clear: Sequence[Placement]
+) -> tuple[Floats, float, Floats] | None:
+    """Return position (2,) [m], yaw [rad] and scale (3,) of a rug of `size` (3,) [m] at the first place that takes it, there as large as it can; None for none.
+
+    `places` are middles and directions (x, y, yaw); the rug stays within the room and off the furniture `clear`.
+    """
+    blocked = [p.footprint() for p in clear]
+    for x, y, yaw in places:
+        for share in SHARES:
+            c, s = math.cos(yaw), math.sin(yaw)
+            half = share * size[:2] / 2
+            corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half
+            outline = np.ascontiguousarray(corners @ np.array([[c, s], [-s, c]]) + (x, y))
+            wider = np.ascontiguousarray((corners + np.sign(corners) * EDGE) @ np.array([[c, s], [-s, c]]) + (x, y))
+            if excess(wider, polygon) <= 1e-6 and all(gap(outline, other) > 0 for other in blocked):
+                return np.array([x, y]), yaw, np.array([share, share, THICK / size[2]])
+    return None

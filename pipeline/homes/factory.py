@@ -7,6 +7,7 @@ import functools
 import gc
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,16 +19,15 @@ from pipeline.errors import ContentError, RefusedError
 from pipeline.execution import give_memory_back, tell
 from pipeline.floorplan.program.priors import PriorSettings
 from pipeline.homes.asset_cache import AssetCache
-from pipeline.homes.furnish import HomeDraft, draft_rooms
+from pipeline.homes.furnish import draft_rooms
 from pipeline.homes.library import MEMORY, Library, kept_within
 from pipeline.homes.life import make_homes
 from pipeline.homes.outcomes import Empty, Outcome
-from pipeline.homes.planning import plan_home
+from pipeline.homes.planning import PlannedHome, plan_home
 from pipeline.homes.request import Request
-from pipeline.homes.resources import Resources
-from pipeline.homes.settings import ShardSettings
+from pipeline.homes.resources import Resources, ShardSettings
 from pipeline.manifest import digest, sha256_file
-from pipeline.relations import files as relation_files
+from pipeline.relations.model import Relations
 from pipeline.retrieval.index import AssetIndex
 from pipeline.retrieval.settings import RetrievalSettings
 from pipeline.shards import code_digest
@@ -45,19 +45,17 @@ class Factory(Resources):
         """Homes that are sampled together."""
         return self.shard.chunk
 
-    def first_drafts(self, requests: Sequence[Request]) -> list[HomeDraft]:
+    def first_drafts(self, requests: Sequence[Request]) -> list[PlannedHome]:
         """Return the first attempt at each home that can be: what the stage `sample` writes."""
         planned = []
         for request in requests:
             tell("planning", request.index)
             with suppress(RefusedError):  # said where the home would be made
-                planned.append((request, plan_home(self, request, 0)))
-        drafts = iter(draft_rooms(self, [job for _, home in planned for job in home.jobs]))
-        return [
-            HomeDraft(request, home.prompt, home.program, home.plan, tuple(next(drafts) for _ in home.jobs)) for request, home in planned
-        ]
+                planned.append(plan_home(self, request, 0))
+        drafts = iter(draft_rooms(self, [job for home in planned for job in home.jobs]))
+        return [replace(home, drafts=tuple(next(drafts) for _ in home.jobs)) for home in planned]
 
-    def make(self, requests: Sequence[Request], first: Sequence[HomeDraft] | None = None, *, files: bool = True) -> list[Outcome | Empty]:
+    def make(self, requests: Sequence[Request], first: Sequence[PlannedHome] | None = None, *, files: bool = True) -> list[Outcome | Empty]:
         """Make a batch of homes, each an Outcome or, where it cannot be made, an Empty. `first` are first drafts that a stage has made already."""
         with _tidied_once():
             return make_homes(self, requests, {d.request.index: d for d in first or ()}, files=files)
@@ -96,7 +94,7 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
             "relations": sha256_file(relations),
             "weights": sha256_file(weights),
         },
-        LearntRelations(relation_files.load(relations)),
+        LearntRelations(Relations.load(relations)),
     )
 
 

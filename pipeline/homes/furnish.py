@@ -1,5 +1,6 @@
 """One attempt at each of a batch of rooms: guided diffusion, then retrieval from both libraries."""
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -7,21 +8,16 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import shapely
 
-from pipeline import seeds
-from pipeline import taxonomy as categories
+from pipeline import seeds, taxonomy
 from pipeline.diffusion.context import CategoryBounds, Proposal, RoomContext
-from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Placement
-from pipeline.entities.plan import Plan
 from pipeline.execution import give_memory_back
 from pipeline.homes.parts import split_room
-from pipeline.homes.request import Request, RoomJob
+from pipeline.homes.request import RoomJob
 from pipeline.homes.resources import Resources
-from pipeline.homes.rounding import round_placement
 from pipeline.retrieval.index import AssetIndex, Match
-from pipeline.retrieval.neighbours import part
 from pipeline.retrieval.taste import Taste, draw_finishes, draw_style, tasteful
-from pipeline.retrieval.wall_alignment import keep_at_walls, put_before_walls
+from pipeline.retrieval.wall_alignment import keep_at_walls, part, put_before_walls
 from pipeline.taxonomy import Taxonomy
 
 PART = 1000  # between the numbers of a room's parts: more than homes have rooms
@@ -39,51 +35,34 @@ class Draft:
     taste: Taste = field(default_factory=Taste)
 
 
-@dataclass(frozen=True, slots=True)
-class HomeDraft:
-    """The first attempt at a home: its plan, and a draft of each room that is furnished."""
-
-    request: Request
-    prompt: str
-    program: str
-    plan: Plan
-    drafts: tuple[Draft, ...]
-
-
 def draft_rooms(resources: Resources, jobs: Sequence[RoomJob]) -> list[Draft]:
-    """Furnish a batch of rooms with what is loaded, timed as "sample"; nothing is moved yet."""
+    """Return what the layout model places in each room, as assets of the library, timed as "sample"; nothing is moved yet.
+
+    Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
+    """
+    sampler, known = resources.sampler, taxonomy.load()
     with resources.time("sample"):
-        drafts = furnish(jobs, resources.sampler, resources.index, categories.load())
+        wholes = [RoomContext.of(job.plan, job.room_id, job.layout_type) for job in jobs]
+        draws = [seeds.generator(sampler.seed, "usual", job.index, job.number) for job in jobs]
+        rooms = [_parts(job, whole, known, draw) for job, whole, draw in zip(jobs, wholes, draws, strict=True)]
+        contexts = [part for parts in rooms for part in parts]
+        keys = [(job.index, job.number + PART * k, job.draw) for job, parts in zip(jobs, rooms, strict=True) for k in range(len(parts))]
+        proposals = iter(sampler.sample_rooms(contexts, keys))
+        drafts = [
+            retrieve(job, whole, [p for _ in parts for p in next(proposals)], resources.index, known, sampler.seed)
+            for job, whole, parts in zip(jobs, wholes, rooms, strict=True)
+        ]
         give_memory_back()  # some 30 MiB of the sampler's, before previews take as much
     return drafts
 
 
-def furnish(jobs: Sequence[RoomJob], sampler: Sampler, index: AssetIndex, taxonomy: Taxonomy) -> list[Draft]:
-    """Return what the layout model places in each room, as assets of the library.
-
-    Draws are keyed by (seed, home, room, attempt) alone, so a room does not depend on which rooms share its batch.
-    """
-    wholes = [RoomContext.of(job.plan, job.room_id, job.layout_type) for job in jobs]
-    rooms = [
-        _parts(job, whole, taxonomy, seeds.generator(sampler.seed, "usual", job.index, job.number))
-        for job, whole in zip(jobs, wholes, strict=True)
-    ]
-    contexts = [part for parts in rooms for part in parts]
-    keys = [(job.index, job.number + PART * k, job.draw) for job, parts in zip(jobs, rooms, strict=True) for k in range(len(parts))]
-    proposals = iter(sampler.sample_rooms(contexts, keys))
-    return [
-        retrieve(job, whole, [p for _ in parts for p in next(proposals)], index, taxonomy, sampler.seed)
-        for job, whole, parts in zip(jobs, wholes, rooms, strict=True)
-    ]
-
-
-def _parts(job: RoomJob, whole: RoomContext, taxonomy: Taxonomy, rng: np.random.Generator) -> list[RoomContext]:
+def _parts(job: RoomJob, whole: RoomContext, words: Taxonomy, rng: np.random.Generator) -> list[RoomContext]:
     """Return a room, or the parts of one that serves as several, each as the layout model is asked for it."""
-    parts = split_room(whole, [(kind, taxonomy.layouts[kind].part) for kind in job.kinds]) if len(job.kinds) > 1 else [whole]
+    parts = split_room(whole, [(kind, words.layouts[kind].part) for kind in job.kinds]) if len(job.kinds) > 1 else [whole]
     counts = _split_count(job.count, [shapely.Polygon(part.polygon).area for part in parts])
     kinds = [part.layout_type for part in parts]
-    asked = [(*category_bounds(job, kind, kinds, taxonomy), *usual_bounds(job, kind, taxonomy, rng)) for kind in kinds]
-    company = tuple((c.of, c.also, c.least) for c in taxonomy.company)
+    asked = [(*category_bounds(job, kind, kinds, words), *usual_bounds(job, kind, words, rng)) for kind in kinds]
+    company = tuple((c.of, c.also, c.least) for c in words.company)
     return [replace(part, n_target=n, category_bounds=b, company=company) for part, n, b in zip(parts, counts, asked, strict=True)]
 
 
@@ -103,38 +82,38 @@ def taste_of(job: RoomJob, seed: int, index: AssetIndex) -> Taste:
     return Taste(style, bool(wish), finishes)
 
 
-def category_bounds(job: RoomJob, kind: str, kinds: Sequence[str], taxonomy: Taxonomy) -> tuple[CategoryBounds, ...]:
+def category_bounds(job: RoomJob, kind: str, kinds: Sequence[str], words: Taxonomy) -> tuple[CategoryBounds, ...]:
     """Return what a room, or the part of layout type `kind` of one whose parts are of `kinds`, is to hold: what is wished for, and of each group of the type's essentials one thing.
 
     What is wished for of a group, none of it too, stands. What rooms of the plan's type do not want stays out, unless it is wished for.
     """
     wished = {c for bounds in job.category_bounds for c in bounds.categories}
-    unwanted = tuple(c for c in job.exclusions(taxonomy) if c not in wished)
-    needed = Counter(tuple(c for c in group if c not in unwanted) for group in job.essentials_of(kind, taxonomy))
+    unwanted = tuple(c for c in job.exclusions(words) if c not in wished)
+    needed = Counter(tuple(c for c in group if c not in unwanted) for group in job.essentials_of(kind, words))
     groups = [b for group, least in needed.items() if not wished.intersection(group) for b in _essential(group, least, job.attempt)]
     own = [
-        bounds if _host(bounds, kinds, taxonomy) == kind else replace(bounds, least=0, most=bounds.most and 0)
+        bounds if _host(bounds, kinds, words) == kind else replace(bounds, least=0, most=bounds.most and 0)
         for bounds in job.category_bounds
     ]
     return (*own, *groups, *([CategoryBounds(unwanted, 0, 0)] if unwanted else []))
 
 
-def _host(bounds: CategoryBounds, kinds: Sequence[str], taxonomy: Taxonomy) -> str:
+def _host(bounds: CategoryBounds, kinds: Sequence[str], words: Taxonomy) -> str:
     """Return the part, by its layout type, in which what is wished for usually stands; the first of them where it stands nowhere."""
-    usual = [room for c in bounds.categories for room in taxonomy.categories[c].usual]
-    places = [kind for room in usual for kind in kinds if room == kind or taxonomy.types[room].furnished_as == kind or room in kind]
+    usual = [room for c in bounds.categories for room in words.categories[c].usual]
+    places = [kind for room in usual for kind in kinds if room == kind or words.types[room].furnished_as == kind or room in kind]
     return places[0] if places else kinds[0]
 
 
-def usual_bounds(job: RoomJob, kind: str, taxonomy: Taxonomy, rng: np.random.Generator) -> tuple[CategoryBounds, ...]:
+def usual_bounds(job: RoomJob, kind: str, words: Taxonomy, rng: np.random.Generator) -> tuple[CategoryBounds, ...]:
     """Return what a room, or its part of layout type `kind`, is asked to hold because most do, on its first tries; nothing where a number of objects, or some of these, is wished for."""
-    own = taxonomy.types[job.room.type].usual if job.room.type in taxonomy.types else ()
-    asked = [usual for usual in own if _host(CategoryBounds(usual.of), job.kinds, taxonomy) == kind]
-    asked += taxonomy.layouts[kind].usual if kind in taxonomy.layouts else ()
+    own = words.types[job.room.type].usual if job.room.type in words.types else ()
+    asked = [usual for usual in own if _host(CategoryBounds(usual.of), job.kinds, words) == kind]
+    asked += words.layouts[kind].usual if kind in words.layouts else ()
     marks = [(usual, rng.random()) for usual in asked]
     if job.count is not None or job.attempt >= FREE_CHOICE:
         return ()
-    settled, out = {c for bounds in job.category_bounds for c in bounds.categories}, set(job.exclusions(taxonomy))
+    settled, out = {c for bounds in job.category_bounds for c in bounds.categories}, set(job.exclusions(words))
     drawn = [usual.of for usual, mark in marks if mark < usual.share and job.room.area >= usual.floor and settled.isdisjoint(usual.of)]
     return tuple(CategoryBounds(of, 1) for group in dict.fromkeys(drawn) if (of := tuple(c for c in group if c not in out)))
 
@@ -152,7 +131,7 @@ def retrieve(
     context: RoomContext,
     proposals: Sequence[Proposal],
     index: AssetIndex,
-    taxonomy: Taxonomy,
+    words: Taxonomy,
     seed: int,
 ) -> Draft:
     """Replace each proposal by the nearest asset that suits the room's taste, standing on the floor, hanging from the ceiling, or at its wall.
@@ -170,7 +149,7 @@ def retrieve(
             lost.append(proposal.category)
             continue
         position = keep_at_walls(proposal.position, proposal.yaw, proposal.size, match.size, context.polygon)
-        position[2] = _height(taxonomy.categories[proposal.category].mount, proposal, float(match.size[2]), context)
+        position[2] = _height(words.categories[proposal.category].mount, proposal, float(match.size[2]), context)
         placement = Placement(
             f"{job.room_id}_{proposal.category}_{number}",
             job.room_id,
@@ -184,15 +163,13 @@ def retrieve(
             match.distance,
         )
         placements.append(placement)
-    return Draft(job, tuple(map(round_placement, _apart(placements, context, taxonomy))), tuple(lost), taste)
+    return Draft(job, tuple(map(round_placement, _apart(placements, context, words))), tuple(lost), taste)
 
 
-def _apart(placements: Sequence[Placement], context: RoomContext, taxonomy: Taxonomy) -> list[Placement]:
+def _apart(placements: Sequence[Placement], context: RoomContext, words: Taxonomy) -> list[Placement]:
     """Return the placements, what stands on the floor or hangs on walls moved out of walls and of its neighbours; seats are not: they belong under tables."""
     apart = list(placements)
-    own = [
-        k for k, p in enumerate(placements) if (c := taxonomy.categories[p.category]).mount in ("floor", "wall") and c.super not in SEATS
-    ]
+    own = [k for k, p in enumerate(placements) if (c := words.categories[p.category]).mount in ("floor", "wall") and c.super not in SEATS]
     if own:
         yaws, sizes = np.array([placements[k].yaw for k in own]), np.array([placements[k].size for k in own])
         before = [put_before_walls(placements[k].position, placements[k].yaw, placements[k].size, context.polygon) for k in own]
@@ -209,14 +186,11 @@ def _matches(job: RoomJob, index: AssetIndex, taste: Taste, proposals: Sequence[
     lacking = (job.furniture.openable or 0) - sum(m.openable for m in matches if m)
     if lacking > 0:
         opening = tasteful(index.openers(), taste, categories, sizes, latents, positions)
-        still = [k for k, (m, o) in enumerate(zip(matches, opening, strict=True)) if m and o and not m.openable]
-        for k in sorted(still, key=lambda k: (_distance(opening[k]) - _distance(matches[k]), k))[:lacking]:
+        pairs = enumerate(zip(matches, opening, strict=True))
+        farther = sorted((o.distance - m.distance, k) for k, (m, o) in pairs if m and o and not m.openable)
+        for _, k in farther[:lacking]:
             matches[k] = opening[k]
     return matches
-
-
-def _distance(match: Match | None) -> float:
-    return match.distance if match else np.inf
 
 
 def _height(mount: str, proposal: Proposal, height: float, context: RoomContext) -> float:
@@ -227,3 +201,19 @@ def _height(mount: str, proposal: Proposal, height: float, context: RoomContext)
     if mount == "ceiling":
         return highest
     return float(np.clip(proposal.position[2], context.elevation, highest))
+
+
+def round_placement(placement: Placement) -> Placement:
+    """Round a pose, so that the last bits of a sum never reach a dataset: position and size to 0.1 mm, yaw to 1e-5 rad in (-pi, pi], scale to 1e-6."""
+    yaw = round(math.remainder(placement.yaw, 2 * math.pi), 5)
+    if yaw <= -3.14159:
+        yaw = 3.14159
+    # Adding 0.0 turns -0.0 into 0.0: equal numbers must be equal bytes.
+    return replace(
+        placement,
+        position=np.round(placement.position, 4) + 0.0,
+        yaw=yaw + 0.0,
+        size=np.round(placement.size, 4),
+        scale=np.round(placement.scale, 6),
+        retrieval_distance=round(placement.retrieval_distance, 6),
+    )

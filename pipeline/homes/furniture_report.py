@@ -7,6 +7,7 @@ from typing import Any
 from pipeline import taxonomy
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq
 from pipeline.floorplan.program.furniture import matching_categories, plain
+from pipeline.homes.room_finishing import bounds_in_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,15 +48,6 @@ def report(entries: Sequence[Delivery]) -> str:
     return "\n".join("".join(cell.ljust(w) for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows) + "\n"
 
 
-def bounds(least: int | None, most: int | None) -> str:
-    """Return bounds in words."""
-    if most is None:
-        return f"at least {least}"
-    if most == 0:
-        return "none"
-    return str(most) if least == most else f"{least} to {most}" if least else f"at most {most}"
-
-
 def _room(
     room: RoomReq, wish: Furniture, row: Mapping[str, Any], objects: Sequence[Mapping[str, Any]], styles: Mapping[str, str]
 ) -> list[Delivery]:
@@ -78,4 +70,4 @@ def _room(
 
 
 def _delivery(room: str, what: str, least: int, most: int | None, have: int) -> Delivery:
-    return Delivery(room, what, bounds(least, most), str(have), least <= have and (most is None or have <= most))
+    return Delivery(room, what, bounds_in_words(least, most), str(have), least <= have and (most is None or have <= most))

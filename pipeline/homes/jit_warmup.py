@@ -6,12 +6,12 @@ from contextlib import suppress
 from pathlib import Path
 
 from pipeline import floorplan, params
-from pipeline.entities.home import Home
 from pipeline.execution import Progress
 from pipeline.geometry.compiled import cache_folder, is_cold
 from pipeline.homes.factory import Factory
 from pipeline.homes.request import Request
-from pipeline.verify import VerifySettings, verify_home
+from pipeline.homes.soundness import judge_empty
+from pipeline.verify import VerifySettings
 
 WHOLE = "whole-home"  # a file of the cache: what it takes to make a whole home has been compiled
 SAMPLES = 2  # homes that are made to compile it
@@ -19,9 +19,7 @@ SAMPLES = 2  # homes that are made to compile it
 
 def warm(root: Path) -> None:
     """Plan a small home and judge it empty; from the cache this takes a second. `root` is the checkout."""
-    verify_home(
-        Home("empty", 0, 0, "", "", floorplan.warm(), ()), {}, params.section(VerifySettings, params.read(root / "params.yaml"), "verify")
-    )
+    judge_empty(floorplan.warm(), params.section(VerifySettings, params.read(root / "params.yaml"), "verify"))
 
 
 def warm_up(progress: Progress, root: Path) -> None:

@@ -20,9 +20,8 @@ from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError, SfgenError
 from pipeline.execution import tell
 from pipeline.homes.clutter import small_things
-from pipeline.homes.exports import files_of
-from pipeline.homes.furnish import Draft, HomeDraft, draft_rooms
-from pipeline.homes.outcomes import Empty, Outcome
+from pipeline.homes.furnish import Draft, draft_rooms
+from pipeline.homes.outcomes import Empty, Outcome, files_of
 from pipeline.homes.planning import PlannedHome, plan_home
 from pipeline.homes.request import Request, RoomJob
 from pipeline.homes.resources import Resources
@@ -69,12 +68,12 @@ class RoomTries:
 class HomeLife:
     """One home from its plan until it is shipped or refused; `first` is a draft of it that a stage has made already."""
 
-    def __init__(self, resources: Resources, request: Request, first: HomeDraft | None = None) -> None:
+    def __init__(self, resources: Resources, request: Request, first: PlannedHome | None = None) -> None:
         self.resources, self.request = resources, request
         self.rejects: list[Row] = []
         self.tries = 0  # of rooms, under all plans
         self.plan_attempt = 0
-        self.prompt, self.program, self.plan = request.prompt, "", Plan((), (), "")
+        self.planned = PlannedHome(request, request.prompt, "", Plan((), (), ""), ())
         self.rooms: dict[str, RoomTries] = {}
         self.waiting: dict[str, RoomJob] = {}  # by room id: what is to be drafted
         self.drafted: dict[RoomJob, Draft] = {}  # by a stage, or ahead of their time
@@ -84,8 +83,7 @@ class HomeLife:
         self.refusal: Empty | None = None
         self._seconds = 0.0
         if first:
-            self._move_in(PlannedHome(first.prompt, first.program, first.plan, tuple(d.job for d in first.drafts)))
-            self.drafted = {draft.job: draft for draft in first.drafts}
+            self._move_in(first)
         else:
             tell("planning", request.index)
             self._draw_plan()
@@ -107,9 +105,10 @@ class HomeLife:
     @property
     def home(self) -> Home:
         """The home as it stands now, small things included."""
-        rooms = [self.rooms.get(room.room_id) for room in self.plan.rooms]
+        own = self.planned
+        rooms = [self.rooms.get(room.room_id) for room in own.plan.rooms]
         placed = tuple(p for room in rooms if room and room.best for p in room.best.placements)
-        return Home(self.name, self.resources.seed, self.request.index, self.prompt, self.program, self.plan, placed + self.things)
+        return Home(self.name, self.resources.seed, self.request.index, own.prompt, own.program, own.plan, placed + self.things)
 
     # -- planned -----------------------------------------------------------------------------------------------------
 
@@ -121,12 +120,12 @@ class HomeLife:
             self._refuse("refused", error)
 
     def _move_in(self, planned: PlannedHome) -> None:
-        self.prompt, self.program, self.plan = planned.prompt, planned.program, planned.plan
+        self.planned = planned
         self.rooms = {job.room_id: RoomTries(job) for job in planned.jobs}
         self.waiting = {job.room_id: job for job in planned.jobs}
-        self.drafted = {}
+        self.drafted = {draft.job: draft for draft in planned.drafts}
         if self.request.plan:
-            self.closed = closed_rooms(self.plan, self.resources.verify)
+            self.closed = closed_rooms(planned.plan, self.resources.verify)
 
     def finish(self, draft: Draft) -> None:
         """Arrange the draft of a room that waits for it; keep the better of it and what was there."""
@@ -139,7 +138,7 @@ class HomeLife:
         self.tries += 1
         r = self.resources
         with self._charge(), r.time("postopt"):
-            result = finish(draft, r.library, r.index, r.learnt, r.postopt, r.verify, taxonomy.load())
+            result = finish(draft, r)
         self.rejects.extend(self._reject(job, reject) for reject in result.rejects)
         self._check(result, self.rooms[job.room_id].keep(result))
 
@@ -215,7 +214,7 @@ class HomeLife:
             tries = self.rooms[room_id]
             assert tries.best is not None
             mine = {k: violation for k, violation in sorted(violating.items()) if violation.room_id == room_id}
-            left = tries.best = tries.best.without(mine, taxonomy.load())
+            left = tries.best = tries.best.without(mine)
             for object_id, violation in mine.items():
                 self._leave_out(left.draft.job, object_id, violation)
             self._check(left, left)
@@ -254,7 +253,9 @@ class HomeLife:
         return Outcome(home, self.certificate, rows, exported)
 
 
-def make_homes(resources: Resources, requests: Sequence[Request], first: Mapping[int, HomeDraft], *, files: bool) -> list[Outcome | Empty]:
+def make_homes(
+    resources: Resources, requests: Sequence[Request], first: Mapping[int, PlannedHome], *, files: bool
+) -> list[Outcome | Empty]:
     """Take a batch of homes through their lives; rooms are drafted together. `first` are first drafts that a stage has made, by index."""
     homes = [HomeLife(resources, request, first.get(request.index)) for request in requests]
     while any(home.state in {State.PLANNED, State.FINISHED} for home in homes):

@@ -7,25 +7,27 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline import floorplan, seeds, taxonomy
-from pipeline.entities.home import Home
 from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.program.floor_program import Furniture
 from pipeline.floorplan.program.furniture import least_pieces, matching_categories, plain
+from pipeline.homes.furnish import Draft
 from pipeline.homes.request import Request, RoomJob, layout_type
 from pipeline.homes.resources import Resources
-from pipeline.verify import verify_home
+from pipeline.homes.soundness import judge_empty
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedHome:
-    """One attempt at a home: what was asked in words, the program as JSON, the plan, one job per room that is furnished."""
+    """One attempt at a home: what was asked in words, the program as JSON, the plan, one job per room that is furnished; their drafts, where they are made already."""
 
+    request: Request
     prompt: str
     program: str
     plan: Plan
     jobs: tuple[RoomJob, ...]
+    drafts: tuple[Draft, ...] = ()
 
 
 def plan_home(resources: Resources, request: Request, attempt: int) -> PlannedHome:
@@ -45,15 +47,14 @@ def plan_home(resources: Resources, request: Request, attempt: int) -> PlannedHo
             plan = _sound_plan(resources, program, (request.index, attempt))
     wishes = {room.id: room.furniture for room in program.rooms}
     jobs = room_jobs(resources, plan, request.index, attempt, wishes)
-    return PlannedHome(prompt, program.model_dump_json(exclude_defaults=True), plan, tuple(jobs))
+    return PlannedHome(request, prompt, program.model_dump_json(exclude_defaults=True), plan, tuple(jobs))
 
 
 def _sound_plan(resources: Resources, program: floorplan.FloorProgram, keys: tuple[int, int]) -> Plan:
     """Solve a program until the judge finds nothing wrong with the empty home: doors swing, every room is entered."""
     plan = floorplan.solve(program, resources.seed, keys)
     for retry in range(1, resources.shard.plan_draws):
-        empty = Home("empty", resources.seed, keys[0], "", "", plan, ())
-        if verify_home(empty, {}, resources.verify).ok(resources.verify.policy):
+        if judge_empty(plan, resources.verify).ok(resources.verify.policy):
             break
         plan = floorplan.solve(program, resources.seed, (*keys, retry))
     return plan

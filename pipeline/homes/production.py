@@ -19,11 +19,10 @@ from pipeline import tables
 from pipeline.errors import ContentError, SfgenError
 from pipeline.execution import Lost, Progress, map_divisible
 from pipeline.homes.factory import Factory, forget_factory
-from pipeline.homes.furnish import HomeDraft
 from pipeline.homes.outcomes import Empty, Outcome
+from pipeline.homes.planning import PlannedHome
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
-from pipeline.homes.settings import ShardSettings
 from pipeline.shards import (
     EMPTY,
     TABLES,
@@ -81,7 +80,7 @@ class Recipe:
     """
 
     opened: Callable[[], Factory]
-    drafts: Callable[[Factory, Sequence[Request]], list[HomeDraft]] | None = None
+    drafts: Callable[[Factory, Sequence[Request]], list[PlannedHome]] | None = None
     cache_assets: bool = True
     digests: Mapping[str, str] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
@@ -153,10 +152,11 @@ def fill(
     watch = _Watch(tally, progress)
     spent = dict.fromkeys(missing, 0.0)  # CPU seconds by shard, and seconds of waiting for workers that kept silent
     while missing:
+        allowed = {number: factory.shard.shard_seconds * len(dataset.header.indices(number)) for number in missing}
         found = chunks(dataset, missing, asked, factory.chunk, workers)
         done = map_divisible(
             partial(make_chunk, recipe),
-            (replace(c, overdue=spent[c.shard] > allowed_seconds(dataset, factory.shard, c.shard)) for c in found),
+            (replace(c, overdue=spent[c.shard] > allowed[c.shard]) for c in found),
             Chunk.pieces,
             workers=min(workers, -(-todo // LEAST)),
             scheduler=scheduler,
@@ -167,7 +167,9 @@ def fill(
         with closing(done):  # an error stops the workers at once
             for chunk, answer in done:
                 batch = lost_batch(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
-                spent[chunk.shard] += sum(batch.seconds.values()) + silent_seconds(answer, factory.shard)
+                spent[chunk.shard] += sum(batch.seconds.values())
+                if isinstance(answer, Lost) and answer.how == "hung":
+                    spent[chunk.shard] += answer.times * factory.shard.home_seconds
                 for empty in batch.empties:
                     if strict:
                         raise empty.error
@@ -209,16 +211,6 @@ def chunks(dataset: Dataset, missing: Sequence[int], asked: Callable[[int], Requ
             yield Chunk(number, tuple(run))
 
 
-def allowed_seconds(dataset: Dataset, settings: ShardSettings, number: int) -> float:
-    """Return the CPU seconds that a shard may take before its other homes stay empty."""
-    return settings.shard_seconds * len(dataset.header.indices(number))
-
-
-def silent_seconds(answer: Batch | Lost, settings: ShardSettings) -> float:
-    """Return how long one waited for the workers that kept silent at a home [s]."""
-    return answer.times * settings.home_seconds if isinstance(answer, Lost) and answer.how == "hung" else 0.0
-
-
 def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
     """Make one chunk: the step that workers run."""
     factory = recipe.factory()
@@ -239,7 +231,7 @@ def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
     return Batch(homes, tuple(o for o in outcomes if isinstance(o, Empty)), dict(factory.seconds), retries)
 
 
-def attempt(factory: Factory, requests: Sequence[Request], first: Sequence[HomeDraft] | None) -> list[Outcome | Empty]:
+def attempt(factory: Factory, requests: Sequence[Request], first: Sequence[PlannedHome] | None) -> list[Outcome | Empty]:
     """Make homes; an error that the factory does not know costs the one home that raises it, alone, again."""
     try:
         return factory.make(requests, first)

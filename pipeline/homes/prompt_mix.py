@@ -1,19 +1,37 @@
-"""What a dataset is ordered to hold: a mix of prompts, read before the first home is made."""
+"""What a dataset is ordered to hold: the list of params.yaml, or a mix of prompts, read before the first home is made."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from pipeline import params
-from pipeline.errors import RefusedError, UsageError
+from pipeline.errors import ContentError, RefusedError, UsageError
 from pipeline.execution import Progress
 from pipeline.floorplan import request
 from pipeline.homes.request import Request
-from pipeline.homes.settings import DatasetSettings, requests_of
 from pipeline.manifest import digest
 from pipeline.shards import Header, Mix, read_mix
 
 SHOWN = 5  # prompts that cannot be met which are named at the start
+
+
+@dataclass(frozen=True, slots=True)
+class DatasetSettings:
+    """The dataset that `dvc repro` makes (section `dataset`)."""
+
+    homes: int = 24
+    prompts: str = "manifests/prompts/mix.txt"  # one prompt a line
+    prompted: float = 0.5  # share of the homes that take a prompt, in turn; the others draw their program from the prior
+
+
+def requests_of(settings: DatasetSettings, root: Path, seed: int) -> tuple[Request, ...]:
+    """Return what each home of the dataset is asked to be. Raises ContentError for a prompt file that cannot be read."""
+    if settings.homes < 1 or not 0 <= settings.prompted <= 1:
+        raise ContentError("params.yaml: dataset.homes must be 1 or more, dataset.prompted within 0 and 1", "mend section dataset")
+    mix = read_mix(root / settings.prompts)
+    # Home i takes a prompt whenever i * share passes a whole number: evenly spread, and independent of the count.
+    turns = [int((i + 1) * settings.prompted) - int(i * settings.prompted) for i in range(settings.homes)]
+    return tuple(Request(i, mix.prompt(seed, sum(turns[:i])) if turn else "") for i, turn in enumerate(turns))
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,11 +7,31 @@ from dataclasses import dataclass, field
 
 from pipeline.arrange import LearntRelations, PostoptSettings
 from pipeline.diffusion.sampling import Sampler
+from pipeline.errors import ContentError
 from pipeline.floorplan.program.priors import PriorSettings
 from pipeline.homes.library import Library
-from pipeline.homes.settings import ShardSettings
+from pipeline.homes.request import MOST_ATTEMPTS
 from pipeline.retrieval.index import AssetIndex
 from pipeline.verify import VerifySettings
+
+
+@dataclass(frozen=True, slots=True)
+class ShardSettings:
+    """How datasets are cut and what a home may cost (section `shard`)."""
+
+    homes: int = 64  # homes per shard
+    chunk: int = 16  # homes that are sampled together
+    room_attempts: int = 5  # tries of one room before the best of them is taken
+    home_attempts: int = 8  # plans tried for one index before it stays empty
+    plan_draws: int = 8  # drawings of one of them that the judge may find unsound
+    home_seconds: float = 300.0  # CPU seconds that one home may take, and seconds that a worker may keep silent [s]
+    shard_seconds: float = 30.0  # CPU seconds that the homes of a shard may take in the mean: beyond it the others of it stay empty [s]
+    licence: str = "CC0-1.0"  # of what is made; with research-only assets, name theirs
+    preview: int = 768  # side of the top views [px], 0: none; `sfgen shard --preview` says otherwise
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.room_attempts <= MOST_ATTEMPTS:
+            raise ContentError(f"shard.room_attempts is {self.room_attempts}", f"give 1 to {MOST_ATTEMPTS} in params.yaml")
 
 
 @dataclass(frozen=True)

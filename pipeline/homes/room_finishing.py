@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from pipeline.arrange import LearntRelations, PostoptSettings, Site, post_optimise
-from pipeline.entities.asset import Asset
+from pipeline import taxonomy
+from pipeline.arrange import Site, post_optimise
 from pipeline.entities.home import Placement
 from pipeline.floorplan.program.furniture import matching_categories
-from pipeline.homes.furnish import Draft
-from pipeline.homes.rounding import round_placement
+from pipeline.homes.furnish import Draft, round_placement
+from pipeline.homes.resources import Resources
 from pipeline.homes.violations import Violation
-from pipeline.retrieval.index import AssetIndex
-from pipeline.taxonomy import Taxonomy
-from pipeline.verify import VerifySettings
 
 MARGIN = 0.03  # by which the arranger's robot is wider than the judge's, whose raster lies differently [m]
 KEPT = 0.6  # share of what was drafted that a room must keep
@@ -43,20 +40,20 @@ class RoomResult:
         """Order results of one room: without failure first, then wishes met, then the number of objects."""
         return not self.failure, not self.binding, len(self.placements)
 
-    def without(self, violating: Mapping[str, Violation], taxonomy: Taxonomy) -> RoomResult:
+    def without(self, violating: Mapping[str, Violation]) -> RoomResult:
         """Return the result less the objects of these ids, judged again."""
-        return replace(self, placements=tuple(p for p in self.placements if p.object_id not in violating)).judged(taxonomy)
+        return replace(self, placements=tuple(p for p in self.placements if p.object_id not in violating)).judged()
 
-    def judged(self, taxonomy: Taxonomy) -> RoomResult:
+    def judged(self) -> RoomResult:
         """Return the result with what it lacks."""
         unmet = self._unmet()
-        failure, detail = unmet or self._lacking(taxonomy)
+        failure, detail = unmet or self._lacking()
         return replace(self, failure=failure, detail=detail, binding=unmet is not None)
 
-    def _lacking(self, taxonomy: Taxonomy) -> tuple[str, str]:
+    def _lacking(self) -> tuple[str, str]:
         """Return (reason code, detail) of what a room of its type should have, whatever was wished for; ("", "") when nothing is missing."""
         there, usable = {p.category for p in self.placements}, {p.category for p in self.placements if p.object_id not in self.unreached}
-        for group in self.draft.job.essentials(taxonomy):
+        for group in self.draft.job.essentials(taxonomy.load()):
             if not there.intersection(group):
                 return "lacks_essential", f"none of {', '.join(group[:3])}"
             if not usable.intersection(group):
@@ -70,11 +67,11 @@ class RoomResult:
         job, placements = self.draft.job, self.placements
         least, most = job.bounds
         if len(placements) < (least or 0) or (most is not None and len(placements) > most):
-            return "count_missed", f"{len(placements)} objects, asked for {_bounds_in_words(least or 0, most)}"
+            return "count_missed", f"{len(placements)} objects, asked for {bounds_in_words(least or 0, most)}"
         for wish in job.furniture.counts:
             have = sum(p.category in matching_categories(wish, job.room.type) for p in placements)
             if have < wish.min or (wish.max is not None and have > wish.max):
-                return "category_missed", f"{have} {wish.category}, asked for {_bounds_in_words(wish.min, wish.max)}"
+                return "category_missed", f"{have} {wish.category}, asked for {bounds_in_words(wish.min, wish.max)}"
         opening = sum(p.asset_id in self.openers for p in placements)
         if opening < (job.furniture.openable or 0):
             return "openable_missed", f"{opening} objects open, asked for {job.furniture.openable}"
@@ -83,31 +80,25 @@ class RoomResult:
         return None
 
 
-def finish(
-    draft: Draft,
-    assets: Mapping[str, Asset],
-    index: AssetIndex,
-    learnt: LearntRelations,
-    settings: PostoptSettings,
-    verify: VerifySettings,
-    taxonomy: Taxonomy,
-) -> RoomResult:
+def finish(draft: Draft, resources: Resources) -> RoomResult:
     """Take one draft through algorithm 2 (where a share of free floor is asked for) and separation."""
-    job, placements = draft.job, draft.placements
-    site = Site.of(job.plan, job.room_id, replace(verify.robot, radius=verify.robot.radius + MARGIN), verify.cell)
+    job, r, robot = draft.job, resources, resources.verify.robot
+    site = Site.of(job.plan, job.room_id, replace(robot, radius=robot.radius + MARGIN), r.verify.cell)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
-    smaller = index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
+    smaller = r.index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
     counted = job.bounds[0] is not None or bool(job.furniture.counts)
-    arranged, free = post_optimise(site, placements, assets, learnt, settings, smaller, target=job.walkable, keep_count=counted)
+    arranged, free = post_optimise(site, draft.placements, r.library, r.learnt, r.postopt, smaller, target=job.walkable, keep_count=counted)
     placements = tuple(round_placement(p) for p in arranged.placements)
     rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
-    openers = frozenset(p.asset_id for p in placements if assets[p.asset_id].openable)
+    openers = frozenset(p.asset_id for p in placements if r.library[p.asset_id].openable)
     result = RoomResult(draft, placements, tuple(rejects), free=free, openers=openers, unreached=arranged.unreached)
-    return result.judged(taxonomy)
+    return result.judged()
 
 
-def _bounds_in_words(least: int, most: int | None) -> str:
+def bounds_in_words(least: int, most: int | None) -> str:
     """Return bounds in words."""
     if most is None:
         return f"at least {least}"
-    return str(least) if least == most else f"at most {most}" if not least else f"{least} to {most}"
+    if most == 0:
+        return "none"
+    return str(least) if least == most else f"{least} to {most}" if least else f"at most {most}"

@@ -1,6 +1,7 @@
 """Homes as table rows and back."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Opening, Plan, Room, Swing
-from pipeline.homes.reasons import REASONS
+from pipeline.entities.reason import reasons
 from pipeline.homes.request import layout_type
 from pipeline.homes.room_finishing import RoomResult
 from pipeline.manifest import sha256
@@ -16,135 +17,76 @@ from pipeline.taxonomy import Taxonomy
 from pipeline.verify import Certificate
 
 Row = dict[str, Any]
+REASONS = reasons("homes")  # why something was left out, exchanged or tried again while homes were made: the codes of `rejects`
+
+# What a table has of a record under the same names.
+ROOM = ("room_id", "type", "role", "level", "height", "polygon")
+OPENING = ("opening_id", "kind", "rooms", "segment", "height", "sill", "level")
+PLACEMENT = tuple(f.name for f in fields(Placement))
+PLAN = ("entrance", "inner_wall", "outer_wall", "storey_height")
+HOME = ("scene_id", "index", "seed", "prompt", "program")
+ARRAYS = {"position": np.float64, "size": np.float64, "scale": np.float64, "latent": np.float32}
+UNJUDGED: Row = {"objects": 0, "openable": 0, "walkable_paper": 1.0, "walkable_free": 1.0}  # figures that only the judge knows
+
+
+def _row(record: object, names: Sequence[str]) -> Row:
+    """Return some fields of a record as a table takes them."""
+    return {name: v.tolist() if isinstance(v := getattr(record, name), np.ndarray) else v for name in names}
 
 
 def room_row(scene_id: str, room: Room, layout_type: str | None) -> Row:
     """Return a rooms row; the figures that only the judge knows are empty."""
-    return {
-        "scene_id": scene_id,
-        "room_id": room.room_id,
-        "type": room.type,
-        "layout_type": layout_type or "",
-        "role": room.role,
-        "level": room.level,
-        "height": room.height,
-        "area": round(room.area, 4),
-        "polygon": room.polygon.tolist(),
-        "objects": 0,
-        "asked_objects": None,
-        "openable": 0,
-        "openable_sampled": None,
-        "walkable_paper": 1.0,
-        "walkable_free": 1.0,
-        "walkable_target": None,
-        "source_id": "",
-    }
+    asked: Row = {"asked_objects": None, "openable_sampled": None, "walkable_target": None, "source_id": ""}
+    own = {"scene_id": scene_id, "layout_type": layout_type or "", "area": round(room.area, 4)}
+    return _row(room, ROOM) | own | UNJUDGED | asked
 
 
 def opening_row(scene_id: str, opening: Opening) -> Row:
     """Return an openings row."""
     swing = opening.swing
-    return {
-        "scene_id": scene_id,
-        "opening_id": opening.opening_id,
-        "kind": opening.kind,
-        "rooms": list(opening.rooms),
-        "segment": opening.segment.tolist(),
-        "width": round(opening.width, 4),
-        "height": opening.height,
-        "sill": opening.sill,
-        "swing_room": swing.room_id if swing else "",
-        "swing_hinge": swing.hinge if swing else None,
-        "swing_angle": swing.angle if swing else None,
-        "level": opening.level,
-    }
+    room, hinge, angle = (swing.room_id, swing.hinge, swing.angle) if swing else ("", None, None)
+    leaf = {"swing_room": room, "swing_hinge": hinge, "swing_angle": angle}
+    own = {"scene_id": scene_id, "rooms": list(opening.rooms), "width": round(opening.width, 4)}
+    return _row(opening, OPENING) | own | leaf
 
 
 def object_row(scene_id: str, placement: Placement, *, openable: bool) -> Row:
     """Return an objects row."""
-    return {
-        "scene_id": scene_id,
-        "object_id": placement.object_id,
-        "room_id": placement.room_id,
-        "category": placement.category,
-        "asset_id": placement.asset_id,
-        "position": placement.position.tolist(),
-        "yaw": placement.yaw,
-        "size": placement.size.tolist(),
-        "scale": placement.scale.tolist(),
-        "openable": openable,
-        "support": placement.support,
-        "latent": placement.latent.tolist(),
-        "retrieval_distance": placement.retrieval_distance,
-        "source_id": "",
-    }
+    return _row(placement, PLACEMENT) | {"scene_id": scene_id, "openable": openable, "source_id": ""}
 
 
 def plan_of(scene: Mapping[str, Any], rooms: Iterable[Mapping[str, Any]], openings: Iterable[Mapping[str, Any]]) -> Plan:
     """Rebuild the plan of one home from its rows."""
     return Plan(
-        tuple(Room(r["room_id"], r["type"], np.array(r["polygon"], float), r["level"], r["height"], r["role"]) for r in rooms),
+        tuple(Room(**{name: r[name] for name in ROOM} | {"polygon": np.array(r["polygon"], float)}) for r in rooms),
         tuple(_opening(o) for o in openings),
-        scene["entrance"],
-        scene["inner_wall"],
-        scene["outer_wall"],
-        scene["storey_height"],
+        **{name: scene[name] for name in PLAN},
     )
-
-
-def placement_of(row: Mapping[str, Any]) -> Placement:
-    """Rebuild a placement from its objects row."""
-    return Placement(
-        row["object_id"],
-        row["room_id"],
-        row["category"],
-        row["asset_id"],
-        np.array(row["position"], float),
-        row["yaw"],
-        np.array(row["size"], float),
-        np.array(row["scale"], float),
-        np.array(row["latent"], np.float32),
-        row["retrieval_distance"],
-        row["support"],
-    )
-
-
-def homes_of(tables: Mapping[str, list[Row]]) -> list[Home]:
-    """Rebuild homes from rows of scenes, rooms, openings and objects, in the order of the scenes."""
-    grouped = {name: _by_scene(tables[name]) for name in ("rooms", "openings", "objects")}
-    return [
-        Home(
-            scene["scene_id"],
-            scene["seed"],
-            scene["index"],
-            scene["prompt"],
-            scene["program"],
-            plan_of(scene, grouped["rooms"].get(scene["scene_id"], []), grouped["openings"].get(scene["scene_id"], [])),
-            tuple(placement_of(row) for row in grouped["objects"].get(scene["scene_id"], [])),
-        )
-        for scene in tables["scenes"]
-    ]
 
 
 def _opening(row: Mapping[str, Any]) -> Opening:
     swing = Swing(row["swing_room"], row["swing_hinge"], row["swing_angle"]) if row["swing_room"] else None
-    return Opening(
-        row["opening_id"],
-        row["kind"],
-        tuple(row["rooms"]),
-        np.array(row["segment"], float),
-        row["height"],
-        row["sill"],
-        swing,
-        row["level"],
-    )
+    own = {name: row[name] for name in OPENING} | {"rooms": tuple(row["rooms"]), "segment": np.array(row["segment"], float)}
+    return Opening(**own, swing=swing)
 
 
-def _by_scene(rows: Iterable[Row]) -> dict[str, list[Row]]:
-    grouped: dict[str, list[Row]] = {}
-    for row in rows:
-        grouped.setdefault(row["scene_id"], []).append(row)
-    return grouped
+def placement_of(row: Mapping[str, Any]) -> Placement:
+    """Rebuild a placement from its objects row."""
+    return Placement(**{name: np.array(row[name], ARRAYS[name]) if name in ARRAYS else row[name] for name in PLACEMENT})
+
+
+def homes_of(tables: Mapping[str, list[Row]]) -> list[Home]:
+    """Rebuild homes from rows of scenes, rooms, openings and objects, in the order of the scenes."""
+    grouped: dict[tuple[str, str], list[Row]] = {}
+    for table in ("rooms", "openings", "objects"):
+        for row in tables[table]:
+            grouped.setdefault((table, row["scene_id"]), []).append(row)
+    homes = []
+    for scene in tables["scenes"]:
+        rooms, openings, objects = (grouped.get((table, scene["scene_id"]), []) for table in ("rooms", "openings", "objects"))
+        placed = tuple(placement_of(row) for row in objects)
+        homes.append(Home(**{name: scene[name] for name in HOME}, plan=plan_of(scene, rooms, openings), placements=placed))
+    return homes
 
 
 def reject_row(scene_id: str, room_id: str, attempt: int, reject: tuple[str, str, str]) -> Row:
@@ -174,24 +116,12 @@ def home_rows(
         row |= {"objects": len(mine), "openable": sum(openable[p.object_id] for p in mine)}
         if room.room_id in results:
             draft = results[room.room_id].draft
-            row |= {
-                "asked_objects": draft.job.count,
-                "walkable_target": draft.job.walkable,
-                "openable_sampled": sum(assets[p.asset_id].openable for p in draft.placements),
-            }
+            sampled = sum(assets[p.asset_id].openable for p in draft.placements)
+            row |= {"asked_objects": draft.job.count, "walkable_target": draft.job.walkable, "openable_sampled": sampled}
         rooms.append(row)
-    scene = (
-        scene_row(home)
-        | certificate.scene_figures()
-        | {
-            "objects": sum(p.category not in small for p in home.placements),
-            "attempts": tries,
-            "licence": licence,
-            "usd": f"usd/{home.scene_id}.usdc",
-        }
-    )
+    own = {"objects": sum(p.category not in small for p in home.placements), "attempts": tries, "licence": licence}
     return {
-        "scenes": [scene],
+        "scenes": [scene_row(home) | certificate.scene_figures() | own | {"usd": f"usd/{home.scene_id}.usdc"}],
         "rooms": rooms,
         "openings": [opening_row(home.scene_id, opening) for opening in home.plan.openings],
         "objects": [object_row(home.scene_id, p, openable=openable[p.object_id]) for p in home.placements],
@@ -202,33 +132,15 @@ def home_rows(
 def scene_row(home: Home) -> Row:
     """Return a scenes row; the figures that only the judge knows are empty."""
     plan = home.plan
-    return {
-        "scene_id": home.scene_id,
-        "index": home.index,
-        "seed": home.seed,
+    counts = {
         "split": split_of(home.scene_id),
-        "prompt": home.prompt,
-        "program": home.program,
         "storeys": 1 + max((r.level for r in plan.rooms), default=0),
-        "storey_height": plan.storey_height,
-        "inner_wall": plan.inner_wall,
-        "outer_wall": plan.outer_wall,
-        "entrance": plan.entrance,
         "area": round(sum(r.area for r in plan.rooms), 4),
         "rooms": len(plan.rooms),
         "objects": len(home.placements),
-        "openable": 0,
-        "joints": 0,
-        "joints_clear": 0,
-        "collisions": 0,
-        "reach": 0.0,
-        "walkable_paper": 1.0,
-        "walkable_free": 1.0,
-        "attempts": 1,
-        "licence": "",
-        "usd": "",
-        "usd_sha256": "",
     }
+    unknown = {"joints": 0, "joints_clear": 0, "collisions": 0, "reach": 0.0, "attempts": 1, "licence": "", "usd": "", "usd_sha256": ""}
+    return _row(home, HOME) | _row(plan, PLAN) | UNJUDGED | counts | unknown
 
 
 def split_of(scene_id: str) -> str:

@@ -27,7 +27,7 @@ def require_sound(root: Path, own: OwnPlan) -> OwnPlan:
 
 def check_sound(plan: Plan, settings: VerifySettings) -> tuple[Repair, ...]:
     """Return a finding for each room that a robot does not get into. Raises UnsoundError naming what is wrong with the empty home."""
-    judged = _empty(plan, settings)
+    judged = judge_empty(plan, settings)
     closed = judged.closed_rooms() if settings.policy.connected else frozenset[str]()
     width = 2 * settings.robot.radius
     remedy = f"doors and rooms must let a robot {width:.2f} m wide pass"
@@ -46,10 +46,11 @@ def check_sound(plan: Plan, settings: VerifySettings) -> tuple[Repair, ...]:
 
 def closed_rooms(plan: Plan, settings: VerifySettings) -> frozenset[str]:
     """Return the rooms of an empty home that a robot does not get into."""
-    return _empty(plan, settings).closed_rooms()
+    return judge_empty(plan, settings).closed_rooms()
 
 
-def _empty(plan: Plan, settings: VerifySettings) -> Certificate:
+def judge_empty(plan: Plan, settings: VerifySettings) -> Certificate:
+    """Judge a home in which nothing stands yet."""
     return verify_home(Home("empty", 0, 0, "", "", plan, ()), {}, settings)
 
 

@@ -60,9 +60,6 @@ def _nearest_to_door(home: Home, room_id: str) -> Placement | None:
     if not doors or not standing:
         return None
     # Footprint corners and centre stand in for the outline: the order matters here, not the distance.
-    return min(standing, key=lambda p: (_distance(p, doors), p.object_id))
-
-
-def _distance(placement: Placement, doors: list[np.ndarray[tuple[int], np.dtype[np.float64]]]) -> float:
-    points = np.vstack([placement.footprint(), placement.position[None, :2]])
-    return float(min(np.linalg.norm(points - door, axis=1).min() for door in doors))
+    points = {p.object_id: np.vstack([p.footprint(), p.position[None, :2]]) for p in standing}
+    apart = {name: min(float(np.linalg.norm(own - door, axis=1).min()) for door in doors) for name, own in points.items()}
+    return min(standing, key=lambda p: (apart[p.object_id], p.object_id))

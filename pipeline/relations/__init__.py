@@ -1,17 +1,11 @@
 """How things stand to each other, learnt from furnished rooms: no list of pairs is written by hand.
 
-    rooms = split.rooms_of(root / "data/tables", "train")      # Arrangements: polygon, things, openings
+    rooms = rooms_of(root / "data/tables", "train")                   # Arrangements: polygon, things, openings
     known = learning.fit(rooms)
-    known = files.load(root / "data/tables/relations.json")    # what stage `preprocess` learnt from split train
+    known = Relations.load(root / "data/tables/relations.json")       # what stage `preprocess` learnt from split train
 
     known.pair("double_bed", "nightstand")     # PairRelation or None: modes, share, chance, strength
-    known.anchors("nightstand")                # its relations, strongest first: what is it likely to stand at?
-    known.best(nightstand, things)             # (index of the thing at which it stands best, Nearest), or None
-    known.nearest(bed, nightstand)             # Nearest: metres and radians to the nearest mode, and the pose that is exact
-    known.poses(bed, "nightstand", size)       # Poses, likeliest first: where such a thing would stand at this very bed
     known.walls["wardrobe"]                    # WallRelations: which side is at the wall, how near, how often, how often by chance
-
-`bed` and `nightstand` are `Thing(category, x, y, yaw, size)`; all in one frame [m, rad], yaw and size as in the tables.
 
 A relation is that of a member to an anchor, in the anchor's frame, and knows both sizes: on which side the member stands, the
 gap between the facing sides, its offset along that side (from the middle, from either end, or as a share of the side),

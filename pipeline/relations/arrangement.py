@@ -2,25 +2,23 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from pipeline import taxonomy
+from pipeline import tables, taxonomy
+from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 
 Floats = NDArray[np.float64]
 
-
-class Thing(NamedTuple):
-    """A box that stands somewhere: centre (x, y) and bottom z [m], yaw [rad], size (w, d, h) [m] in its own frame."""
-
-    category: str
-    x: float
-    y: float
-    yaw: float
-    size: tuple[float, float, float]
-    z: float = 0.0
+COLUMNS = {
+    ROOMS: ["scene_id", "room_id", "layout_type", "polygon"],
+    OBJECTS: ["scene_id", "room_id", "category", "position", "yaw", "size", "support"],
+    OPENINGS: ["scene_id", "kind", "rooms", "segment"],
+}
 
 
 class RoomOpening(NamedTuple):
@@ -42,11 +40,6 @@ class Arrangement:
     yaw: Floats
     size: Floats
     openings: tuple[RoomOpening, ...] = ()
-
-    def thing(self, index: int) -> Thing:
-        """Return one of the things."""
-        (x, y, z), (w, d, h) = self.position[index], self.size[index]
-        return Thing(self.categories[index], float(x), float(y), float(self.yaw[index]), (float(w), float(d), float(h)), float(z))
 
     @property
     def area(self) -> float:
@@ -91,3 +84,11 @@ def from_rows(
         name = f"{key[0]}/{key[1]}"
         arrangements.append(make_arrangement(name, row["layout_type"], row["polygon"], inside.get(key, ()), holes.get(key, ())))
     return arrangements
+
+
+def rooms_of(folder: Path, split: str) -> list[Arrangement]:
+    """Return the rooms of a split from the tables in a folder, in their order. Raises ContentError for a table that cannot be read."""
+    scenes = tables.read_arrow(folder / f"{SCENES.name}.parquet", SCENES)
+    known = scenes.filter(pc.equal(scenes["split"], split))["scene_id"]
+    records = (tables.read_arrow(folder / f"{table.name}.parquet", table).select(names) for table, names in COLUMNS.items())
+    return from_rows(*(part.filter(pc.is_in(part["scene_id"], known)).to_pylist() for part in records))

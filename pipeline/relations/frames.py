@@ -7,7 +7,6 @@ anchor; `along` is +x for front and back, +y for left and right. `over` is no si
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,12 +106,5 @@ def offset_along(frames: Frames, direction: Floats, reference: str) -> Floats:
     own, other = frames.anchor @ np.abs(direction), frames.extent @ np.abs(direction)
     if reference == "share":
         return np.asarray(value / own)
-    return np.asarray(value - base(reference, own, other))
-
-
-def base(reference: str, own: Any, other: Any) -> Any:
-    """Return where a reference lies [m] for anchors and members of these lengths (P,)."""
-    if reference == "outside":
-        return (own + other) / 2
-    sign = {"middle": 0.0, "low": -1.0, "high": 1.0}[reference]
-    return sign * (own - other) / 2
+    zero = (own + other) / 2 if reference == "outside" else {"middle": 0.0, "low": -1.0, "high": 1.0}[reference] * (own - other) / 2
+    return np.asarray(value - zero)

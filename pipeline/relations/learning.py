@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,32 +25,24 @@ LEAST_STRENGTH = 0.3  # relations weaker than this are not kept
 ALIKE = ("bed", "chair", "sofa")  # super-categories whose members stand to other things as each other do; tables and cabinets do not
 WALK = (0.3, 0.8)  # a gap that nearly all things of two kinds keep says nothing when it is narrower, and no more when it is wider [m]
 TAILS = (5.0, 50.0, 95.0)  # percentiles of a span
+DIGITS = 4  # of what is learnt
 STRAYS, STRAY = 3.0, 0.5  # who is farther off than most by so many times the quartiles' distance, and by no less than this, is a stray [m]
 
 
 @dataclass(frozen=True, slots=True)
 class _Things:
-    """All things of all rooms: box, class, room (T,); the rooms' middles (T, 2)."""
+    """All things of all rooms: box, class (T,), the rooms' middles (T, 2); how many are in each room."""
 
     boxes: Boxes
     kind: Indices
-    room: Indices
     middle: Floats
+    counts: Indices
     names: tuple[str, ...]
 
 
 def alike() -> dict[str, str]:
     """Return the kind of each category whose relations may be learnt from others of its kind."""
     return {name: entry.super for name, entry in taxonomy.load().categories.items() if entry.super in ALIKE}
-
-
-class _Learnt(NamedTuple):
-    """What a relation is, but for the names: modes, cases, the share in a mode, that by chance."""
-
-    modes: tuple[Mode, ...]
-    cases: int
-    share: float
-    chance: float
 
 
 def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) -> Relations:
@@ -62,9 +53,7 @@ def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) ->
     """
     things, kinds = _collect_things(rooms), alike() if kinds is None else kinds
     anchor, member = _together(things)
-    learnt: dict[tuple[int, int], _Learnt | None] = {
-        pair: _relation(things, *case) for pair, case in _cases(anchor, member, things.kind, things.kind)
-    }
+    learnt = {pair: _relation(things, *case) for pair, case in _cases(anchor, member, things.kind, things.kind)}
     if kinds:
         group = np.unique([kinds.get(name, name) for name in things.names], return_inverse=True)[1]
         rare = {(a, m) for a, m in zip(things.kind[anchor].tolist(), things.kind[member].tolist(), strict=True)} - learnt.keys()
@@ -72,9 +61,9 @@ def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) ->
             for pair, case in _cases(anchor, member, anchors[things.kind], members[things.kind]):
                 own = sorted((a, m) for a, m in rare if (anchors[a], members[m]) == pair and not learnt.get((a, m)))
                 kind = _relation(things, *case) if own else None
-                learnt |= {(a, m): kind and _held_by(kind, things, *_of_pair(things, *case, a, m)) for a, m in own}
-    named = [PairRelation(things.names[a], things.names[m], *relation) for (a, m), relation in learnt.items() if relation is not None]
-    kept = [pair for pair in named if pair.strength >= LEAST_STRENGTH]
+                learnt |= {(a, m): kind and _held_by(kind, things, *case, (a, m)) for a, m in own}
+    names = things.names
+    kept = [r._replace(anchor=names[a], member=names[m]) for (a, m), r in learnt.items() if r is not None and r.strength >= LEAST_STRENGTH]
     return relations(kept, walls.fit(rooms, kinds), _distances(things, anchor, member))
 
 
@@ -102,19 +91,15 @@ def _collect_things(rooms: Sequence[Arrangement]) -> _Things:
     parts = [np.concatenate([getattr(room, name) for room in filled] or [np.zeros(0)]) for name in ("position", "yaw", "size")]
     kind = np.array([code[name] for room in filled for name in room.categories], np.intp)
     middle = np.repeat(np.reshape(middles, (-1, 2)), counts, axis=0)
-    return _Things(Boxes(*parts), kind, np.repeat(np.arange(len(filled)), counts), middle, names)
+    return _Things(Boxes(*parts), kind, middle, np.array(counts, np.intp), names)
 
 
 def _together(things: _Things) -> tuple[Indices, Indices]:
     """Return anchors and members (P,): every ordered pair of things that share a room."""
-    starts = np.searchsorted(things.room, np.arange(things.room.max() + 2)) if len(things.room) else np.zeros(1, int)
-    counts = np.diff(starts)
-    many = counts[things.room] if len(things.room) else counts
-    member = np.repeat(np.arange(len(things.kind)), many)
-    within = np.arange(len(member)) - np.repeat(np.cumsum(many) - many, many)
-    anchor = starts[things.room[member]] + within
-    other = anchor != member
-    return anchor[other], member[other]
+    first = np.cumsum(things.counts) - things.counts
+    pairs = [start + np.argwhere(~np.eye(count, dtype=bool)) for start, count in zip(first, things.counts, strict=True)]
+    member, anchor = np.concatenate([*pairs, np.zeros((0, 2), np.intp)]).T
+    return anchor, member
 
 
 def _cases(
@@ -136,24 +121,21 @@ def _cases(
             yield pair, (anchor[kept], member[kept])
 
 
-def _relation(things: _Things, anchor: Indices, member: Indices) -> _Learnt | None:
+def _relation(things: _Things, anchor: Indices, member: Indices) -> PairRelation | None:
+    """Return how these members stand to these anchors, without names; None where they stand anyhow."""
     own = _nearest(things, anchor, member, (1, 1))
     modes = _modes(own)
     if not modes:
         return None
     chances = [in_any_mode(modes, _nearest(things, anchor, member, mirror)).mean() for mirror in ((-1, 1), (1, -1), (-1, -1))]
-    return _Learnt(modes, len(own.turn), float(in_any_mode(modes, own).mean()), float(np.mean(chances)))
+    share, chance = (round(float(np.mean(part)), DIGITS) for part in (in_any_mode(modes, own), chances))
+    return PairRelation("", "", len(own.turn), share, chance, modes)
 
 
-def _of_pair(things: _Things, anchor: Indices, member: Indices, a: int, m: int) -> tuple[Indices, Indices]:
-    """Return those anchors and members (P,) that are of classes `a` and `m`."""
-    own = (things.kind[anchor] == a) & (things.kind[member] == m)
-    return anchor[own], member[own]
-
-
-def _held_by(relation: _Learnt, things: _Things, anchor: Indices, member: Indices) -> _Learnt:
-    """Return a kind's relation without the modes in which none of these members stands, where they are enough to tell: no sofa sits beside its screen, as armchairs do."""
-    own = _nearest(things, anchor, member, (1, 1))
+def _held_by(relation: PairRelation, things: _Things, anchor: Indices, member: Indices, pair: tuple[int, int]) -> PairRelation:
+    """Return a kind's relation without the modes in which none of the members of this pair of classes stands, where they are enough to tell: no sofa sits beside its screen, as armchairs do."""
+    those = (things.kind[anchor] == pair[0]) & (things.kind[member] == pair[1])
+    own = _nearest(things, anchor[those], member[those], (1, 1))
     modes = tuple(mode for mode in relation.modes if in_any_mode((mode,), own).any())
     return relation._replace(modes=modes) if modes and len(own.turn) >= LEAST_IN_MODE else relation
 
@@ -222,20 +204,15 @@ def _mode(frames: Frames, side: int, count: int) -> Mode:
         ]
         spans.append(min(options, key=lambda o: o[0])[1])
     turns = [_turn("anchor", frames.turn), _turn("facing", frames.facing)]
-    return Mode(
-        SIDES[side],
-        spans[1],
-        spans[0],
-        min(turns, key=lambda t: t.high - t.low - (0.02 if t.reference == "anchor" else 0)),
-        len(frames.turn) / count,
-    )
+    turn = min(turns, key=lambda t: t.high - t.low - (0.02 if t.reference == "anchor" else 0))
+    return Mode(SIDES[side], round(len(frames.turn) / count, DIGITS), spans[1], spans[0], turn)
 
 
 def _span(reference: str, values: Floats, unit: float) -> tuple[float, Span]:
     """Return how wide a span is [m], and the span; a reference of fewer parts wins where it is hardly wider."""
     low, middle, high = np.percentile(values[_close(values)] if reference == "outside" else values, TAILS)
     handicap = {"middle": 0.0, "outside": 0.0, "share": 0.02}.get(reference, 0.005)
-    return float((high - low) * unit + handicap), Span(reference, *(round(float(v), 4) for v in (low, middle, high)))
+    return float((high - low) * unit + handicap), Span(reference, *(round(float(v), DIGITS) for v in (low, middle, high)))
 
 
 def _close(gaps: Floats) -> NDArray[np.bool_]:
@@ -248,4 +225,4 @@ def _turn(reference: str, values: Floats) -> Span:
     """Return the span of angles: percentiles around their mean direction."""
     mean = float(np.arctan2(np.sin(values).mean(), np.cos(values).mean()))
     low, middle, high = mean + np.percentile(wrap_angle(values - mean), TAILS)
-    return Span(reference, *(round(float(v), 4) for v in (low, middle, high)))
+    return Span(reference, *(round(float(v), DIGITS) for v in (low, middle, high)))

@@ -1,28 +1,19 @@
-"""What is known of relations: pairs of categories, walls, and the questions that are put to them."""
+"""What is known of relations: pairs of categories, walls, distances; and as JSON: small, stable, readable."""
 
-from collections.abc import Iterable, Mapping, Sequence
+import json
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
 
-from pipeline.relations.arrangement import Thing
-from pipeline.relations.frames import relate
-from pipeline.relations.modes import Mode, Nearest, Pose, Span, boxes, nearest
+from pipeline.errors import ContentError
+from pipeline.manifest import write_bytes
+from pipeline.relations.modes import Mode, Span
 
-
-class Tendency:
-    """What holds in a `share` of its cases, and by `chance` alone in another."""
-
-    __slots__ = ()
-    share: float
-    chance: float
-
-    @property
-    def strength(self) -> float:
-        """How much more often than by chance it holds."""
-        return self.share - self.chance
+VERSION = 2
 
 
-@dataclass(frozen=True, slots=True)
-class PairRelation(Tendency):
+class PairRelation(NamedTuple):
     """How members of one category stand to anchors of another. `cases`: members that share a room with an anchor.
 
     `share` of them are in a mode, `chance` is that of mirrored members.
@@ -30,14 +21,18 @@ class PairRelation(Tendency):
 
     anchor: str
     member: str
-    modes: tuple[Mode, ...]
     cases: int
     share: float
     chance: float
+    modes: tuple[Mode, ...]
+
+    @property
+    def strength(self) -> float:
+        """How much more often than by chance it holds."""
+        return self.share - self.chance
 
 
-@dataclass(frozen=True, slots=True)
-class WallRelation(Tendency):
+class WallRelation(NamedTuple):
     """How things of one category stand to a wall with one of their sides: the gap to it [m], and the turn against it [rad].
 
     `share` of the cases are so, `chance` is the mean share of the other sides.
@@ -45,11 +40,16 @@ class WallRelation(Tendency):
 
     category: str
     side: str
-    gap: Span
-    turn: Span
     cases: int
     share: float
     chance: float
+    gap: Span
+    turn: Span
+
+    @property
+    def strength(self) -> float:
+        """How much more often than by chance it holds."""
+        return self.share - self.chance
 
 
 @dataclass(frozen=True)
@@ -62,44 +62,44 @@ class Relations:
     pairs: Mapping[tuple[str, str], PairRelation]
     walls: Mapping[str, tuple[WallRelation, ...]]
     distances: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    _anchors: dict[str, tuple[PairRelation, ...]] = field(default_factory=dict, repr=False, compare=False)
 
     def pair(self, anchor: str, member: str) -> PairRelation | None:
         """Return the relation of a member to an anchor, if it has one."""
         return self.pairs.get((anchor, member))
-
-    def anchors(self, member: str) -> tuple[PairRelation, ...]:
-        """Return the relations of a member, strongest first."""
-        if member not in self._anchors:
-            own = [pair for (_, name), pair in self.pairs.items() if name == member]
-            self._anchors[member] = tuple(sorted(own, key=lambda p: (-p.strength, p.anchor)))
-        return self._anchors[member]
 
     def strongest(self, least: float = 0.0) -> list[PairRelation]:
         """Return the relations of at least this strength, strongest first."""
         pairs = [pair for pair in self.pairs.values() if pair.strength >= least]
         return sorted(pairs, key=lambda p: (-p.strength, p.anchor, p.member))
 
-    def nearest(self, anchor: Thing, member: Thing) -> Nearest | None:
-        """Return how far a member is from the nearest mode at this anchor, and the pose that would be in it; None without a relation."""
-        pair = self.pair(anchor.category, member.category)
-        if pair is None:
-            return None
-        index, metres, radians = nearest(pair.modes, relate(boxes([anchor]), boxes([member])))
-        mode = int(index[0])
-        return Nearest(mode, float(metres[0]), float(radians[0]), pair.modes[mode].pose(anchor, member, member.size))
+    def save(self, path: Path) -> None:
+        """Write relations, a line for each pair, wall and distance."""
+        walls = (wall for sides in self.walls.values() for wall in sides)
+        listed: dict[str, Iterable[Any]] = {"pairs": self.pairs.values(), "walls": walls}
+        listed["distances"] = ((*names, distance) for names, distance in self.distances.items())
+        lines = {key: ",\n".join(f"  {json.dumps(row)}" for row in rows) for key, rows in listed.items()}
+        parts = [f'"version": {VERSION}', *(f'"{key}": [\n{text}\n]' for key, text in lines.items())]
+        write_bytes(path, ("{" + ",\n".join(parts) + "}\n").encode())
 
-    def poses(self, anchor: Thing, member: str, size: tuple[float, float, float]) -> list[Pose]:
-        """Return where a member of this size would stand at the anchor, one pose for each mode, likeliest first."""
-        pair = self.pair(anchor.category, member)
-        if pair is None:
-            return []
-        return sorted((mode.pose(anchor, None, size) for mode in pair.modes), key=lambda pose: -pose.weight)
-
-    def best(self, member: Thing, anchors: Sequence[Thing]) -> tuple[int, Nearest] | None:
-        """Return the anchor (its index) at whose modes the member is nearest, and that nearest mode; None where none relates."""
-        candidates = [(k, near) for k, anchor in enumerate(anchors) if (near := self.nearest(anchor, member)) is not None]
-        return min(candidates, key=lambda f: f[1].metres + 0.5 * f[1].radians) if candidates else None
+    @classmethod
+    def load(cls, path: Path) -> "Relations":
+        """Read relations. Raises ContentError when the file is missing or holds something else."""
+        try:
+            tree = json.loads(path.read_text(encoding="utf-8"))
+            if tree["version"] != VERSION:
+                raise ContentError(f"relations of version {tree['version']}, not {VERSION}", "run `dvc repro preprocess`")
+            pairs = [
+                PairRelation(a, m, n, share, chance, tuple(_mode(*mode) for mode in modes))
+                for a, m, n, share, chance, modes in tree["pairs"]
+            ]
+            walls = [WallRelation(c, s, n, share, chance, Span(*gap), Span(*turn)) for c, s, n, share, chance, gap, turn in tree["walls"]]
+            return relations(pairs, walls, {(str(a), str(b)): float(distance) for a, b, distance in tree["distances"]})
+        except FileNotFoundError as error:
+            raise ContentError(f"{path} is missing", "run `dvc repro preprocess`, which learns it from the tables") from error
+        except (KeyError, TypeError, ValueError) as error:
+            raise ContentError(
+                f"{path} holds no relations ({type(error).__name__}: {error})", "delete it and run `dvc repro preprocess`"
+            ) from error
 
 
 def relations(
@@ -113,3 +113,7 @@ def relations(
     return Relations(
         dict(sorted(named.items())), {name: tuple(sides) for name, sides in by_category.items()}, dict(sorted((distances or {}).items()))
     )
+
+
+def _mode(side: str, weight: float, *spans: Any) -> Mode:
+    return Mode(side, weight, *(Span(*span) for span in spans))

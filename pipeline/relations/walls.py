@@ -78,4 +78,5 @@ def _relation(name: str, side: int, gaps: Floats, turns: Floats) -> WallRelation
     turn = Span("wall", *(round(float(v), 4) for v in np.percentile(turns[best, side], (5, 50, 95))))
     holds = (gaps > gap.low - METRES) & (gaps < gap.high + METRES) & (turns > turn.low - RADIANS) & (turns < turn.high + RADIANS)
     shares = holds.mean(0)
-    return WallRelation(name, AROUND[side], gap, turn, len(gaps), float(shares[side]), float(np.delete(shares, side).mean()))
+    share, chance = (round(float(part), 4) for part in (shares[side], np.delete(shares, side).mean()))
+    return WallRelation(name, AROUND[side], len(gaps), share, chance, gap, turn)

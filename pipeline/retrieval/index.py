@@ -11,12 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.errors import ContentError
-from pipeline.retrieval.box_merging import merged_boxes
-from pipeline.retrieval.knee_room import SAT_AT, has_knee_room
 from pipeline.retrieval.settings import RetrievalSettings
 
 Row = Mapping[str, Any]
 UNKNOWN = (np.nan,) * 3  # finish
+TIE = 1e-12  # m3: costs of merging boxes that are nearer than that are alike
+SAT_AT = ("desk", "dressing_table", "dining_table")  # categories at which people sit
+SEAT = 0.55  # width of a seat, and of who sits on it [m]
+KNEES = 0.5  # what opens above this is above the seat [m]
+CLOSE = 0.4  # a seat behind what reaches no farther before the front is still at the desk [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,14 +76,13 @@ class AssetIndex:
         latents: Iterable[Row],
         joints: Iterable[Row] = (),
         settings: RetrievalSettings | None = None,
-        splits: Sequence[str] = ("train", "val", "test"),
     ) -> AssetIndex:
         """Build the index from rows of `assets`, `latents` and `asset_joints`.
 
         Raises ContentError when there is no asset, or one has no latent: the tables are then not of one run.
         """
         settings = settings or RetrievalSettings()
-        rows = sorted((a for a in assets if a["split"] in splits or not a["split"]), key=lambda a: str(a["asset_id"]))
+        rows = sorted(assets, key=lambda a: str(a["asset_id"]))
         if not rows:
             raise ContentError(
                 "the library holds no furniture", "look at data/tables/rejects.parquet for why, then run `dvc repro preprocess` again"
@@ -121,17 +123,6 @@ class AssetIndex:
             np.array([str(r.get("style", "")) for r in rows], np.str_),
             np.array(finishes, float),
         )
-
-    def match(
-        self, categories: Sequence[str], sizes: NDArray[np.float64], latents: NDArray[np.float32] | NDArray[np.float64]
-    ) -> list[Match | None]:
-        """Return the nearest asset for each of P asks, None where the library has nothing of that category.
-
-        `sizes` (P, 3) [m], `latents` (P, 32). Ties go to the smaller asset_id. One call per batch: every category is
-        one matrix of distances.
-        """
-        rows, distances = self.nearest(categories, sizes, latents)
-        return [None if row < 0 else self.fit(int(row), float(d), sizes[p]) for p, (row, d) in enumerate(zip(rows, distances, strict=True))]
 
     def nearest(
         self, categories: Sequence[str | None], sizes: NDArray[np.float64], latents: NDArray[np.float32] | NDArray[np.float64]
@@ -188,7 +179,7 @@ class AssetIndex:
         table = self.distance(fits, self.sizes[row][None], raw[None])[0]
         best = int(table.argmin())
         closest = int(fits[best])
-        return Match(self.asset_ids[closest], float(table[best]), np.ones(3), self.sizes[closest].copy(), bool(self.openable[closest]))
+        return self.fit(closest, float(table[best]), self.sizes[closest])
 
     def lookup(
         self, categories: Sequence[Sequence[str | None]], sizes: NDArray[np.float64], latents: NDArray[np.float32]
@@ -221,3 +212,38 @@ class AssetIndex:
         limit = 0.0 if self.articulated[row] else self.settings.stretch
         scale = np.clip(np.asarray(asked, float) / self.sizes[row], 1 - limit, 1 + limit)
         return Match(self.asset_ids[row], distance, scale, self.sizes[row] * scale, bool(self.openable[row]))
+
+
+def merged_boxes(boxes: NDArray[np.float64], most: int) -> NDArray[np.float64]:
+    """Merge boxes (J, 2, 3) until at most `most` are left; each input lies inside one output.
+
+    Greedy: the pair whose union adds the least volume over its two members goes first (ties: the earlier pair).
+    """
+    left = boxes[np.isfinite(boxes).all((1, 2)) & (boxes[:, 1] > boxes[:, 0]).all(1)]
+    while len(left) > most:
+        one, other = np.triu_indices(len(left), 1)
+        unions = np.stack([np.minimum(left[one, 0], left[other, 0]), np.maximum(left[one, 1], left[other, 1])], 1)
+        volumes = volume(left)
+        cost = volume(unions) - volumes[one] - volumes[other]
+        pair = int(np.flatnonzero(cost <= cost.min() + TIE)[0])
+        left = np.delete(left, other[pair], 0)
+        left[one[pair]] = unions[pair]
+    return left.reshape(-1, 2, 3)
+
+
+def volume(boxes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the volumes (N,) of boxes (N, 2, 3) [m3]."""
+    return np.asarray(np.prod(boxes[:, 1] - boxes[:, 0], axis=1))
+
+
+def has_knee_room(size: NDArray[np.float64], sweeps: NDArray[np.float64]) -> bool:
+    """Tell whether a table of this size (3,) leaves a place for a seat at its front; `sweeps` (K, 2, 3) are the boxes through which its parts move [m]."""
+    half, front = float(size[0]) / 2, -float(size[1]) / 2
+    low, high = sweeps[:, 0], sweeps[:, 1]
+    blocks = (low[:, 2] < KNEES) & (front - low[:, 1] > CLOSE)
+    place = -half
+    for box in np.argsort(low[blocks, 0], kind="stable"):
+        if low[blocks][box, 0] - place >= SEAT:
+            return True
+        place = max(place, float(high[blocks][box, 0]))
+    return not blocks.any() or half - place >= SEAT

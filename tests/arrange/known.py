@@ -17,15 +17,15 @@ def farthest(found, wished):
 
 def mode(side, out, along, turn, weight=0.5):
     """`out` (low, middle, high) from touching sides, `along` (reference, low, middle, high), `turn` from the anchor's."""
-    return Mode(side, Span("outside", *out), Span(*along), Span("anchor", turn, turn, turn), weight)
+    return Mode(side, weight, Span("outside", *out), Span(*along), Span("anchor", turn, turn, turn))
 
 
 def pair(anchor, member, *modes):
-    return PairRelation(anchor, member, modes, 100, 0.95, 0.05)
+    return PairRelation(anchor, member, 100, 0.95, 0.05, modes)
 
 
 def wall(category, share=0.98):
-    return WallRelation(category, "back", Span("outside", 0.004, 0.01, 0.03), Span("wall", 0.0, 0.0, 0.0), 100, share, 0.05)
+    return WallRelation(category, "back", 100, share, 0.05, Span("outside", 0.004, 0.01, 0.03), Span("wall", 0.0, 0.0, 0.0))
 
 
 BESIDE = [mode(side, (0.03, 0.08, 0.15), ("high", 0.0, 0.0, 0.0), 0.0) for side in ("left", "right")]

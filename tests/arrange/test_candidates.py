@@ -19,11 +19,10 @@ def test_what_hangs_pays_for_a_door_only_at_the_wall_that_has_it():
     """Its back turned to the wall of the entrance: at that wall there is nothing to hang on, in the room's middle it costs nothing."""
     room = site(one_room(np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 4.0], [0.0, 4.0]])))
     item = make_item(drafted(MIRROR, 0.75, 2.0, math.pi, z=1.4), {"mirror": MIRROR}, LearntRelations(relations([], [wall("mirror")])), 0.5)
-    walls = room.walls
     middle, door = np.array([0.75, 2.0, 1.4, math.pi]), np.array([0.75, 0.03, 1.4, math.pi])
-    assert not hides(item, middle, walls)
-    assert hides(item, door, walls)
-    _, costs = near_by(item, middle, walls, np.zeros((0, 4, 2)), room, SeparateSettings())
+    assert not hides(item, middle, room)
+    assert hides(item, door, room)
+    _, costs = near_by(item, middle, np.zeros((0, 4, 2)), room, SeparateSettings())
     assert not np.isnan(costs).any()
     assert (np.diff(costs) >= 0).all()
 
@@ -35,7 +34,7 @@ def test_what_belongs_to_a_wall_goes_to_a_wall_across_the_room_before_it_stands_
     target = np.array([4.5, 3.68, 0.0, 0.0])
     learnt = LearntRelations(relations([], [wall("wardrobe", share)]))
     item = make_item(drafted(closet, *target[:2]), {"closet": closet}, learnt, 0.5)
-    poses, _ = near_by(item, target, room.walls, np.zeros((0, 4, 2)), room, SeparateSettings())
+    poses, _ = near_by(item, target, np.zeros((0, 4, 2)), room, SeparateSettings())
     depth = np.column_stack([poses[:, 0], 5.0 - poses[:, 0], poses[:, 1], 4.0 - poses[:, 1]]).min(1)
     backed = depth < 0.33
     first = int(np.argmin(backed))

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from pipeline.arrange import Hanging, lay_rug
+from pipeline.arrange import Hanging
 from pipeline.entities.plan import Opening
+from pipeline.homes.clutter import lay_rug
 from tests.geometry.furniture import SQUARE, placed
 
 WINDOW = Opening("window", "window", ("room",), np.array([[1.0, 3.12], [2.2, 3.12]]), 1.3, 0.9)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from pipeline.arrange import separate
-from pipeline.arrange.groups import group_of
+from pipeline.arrange.bonds import group_of
 from pipeline.arrange.item import make_item
 from pipeline.arrange.occupancy import Occupancy
 from pipeline.arrange.settings import SeparateSettings

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.arrange import LearntRelations, separate
-from pipeline.arrange.bonds import broken, find_bond, nearest
+from pipeline.arrange.bonds import LEVER, at_anchor, broken, find_bond, nearest
 from pipeline.arrange.item import make_item
 from pipeline.entities.plan import Opening, Plan
-from pipeline.relations.arrangement import Thing
+from pipeline.relations.frames import Boxes, relate
 from pipeline.relations.model import WallRelation, relations
 from pipeline.relations.modes import Mode, Span
 from pipeline.verify import Policy, verify_home
@@ -62,13 +62,22 @@ def test_a_rare_mode_binds_nobody():
 
 @settings(max_examples=60, deadline=None)
 @given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), st.floats(-3.1, 3.1), st.sampled_from(sorted(RELATIONS.pairs)))
-def test_the_compiled_search_finds_the_mode_that_relations_find(x, y, yaw, names):
-    anchor = Thing(names[0], 0.3, -0.2, 0.7, (1.8, 0.9, 0.7))
-    member = Thing(names[1], x, y, yaw, (0.5, 0.4, 0.7))
-    told = RELATIONS.nearest(anchor, member)
-    table, _ = LORE.modes(*names)
-    metres, radians, *_ = nearest(table, np.array([0.3, -0.2, 0.7]), np.array([0.9, 0.45]), np.array([x, y, yaw]), np.array([0.25, 0.2]))
-    assert metres + 0.5 * radians == pytest.approx(told.metres + 0.5 * told.radians, abs=1e-6)
+def test_the_compiled_search_finds_the_nearest_mode_and_a_pose_that_is_in_it(x, y, yaw, names):
+    anchor, member = (np.array([[0.3, -0.2, 0.7]]), np.array([[1.8, 0.9, 0.7]])), (np.array([[x, y, yaw]]), np.array([[0.5, 0.4, 0.7]]))
+
+    def distances(at, turned):
+        """How far the member is off each mode there [m], [rad]."""
+        frames = relate(
+            *(Boxes(np.insert(p[:, :2], 2, 0.0, axis=1), p[:, 2], size) for p, size in (anchor, (np.array([[*at, turned]]), member[1])))
+        )
+        return [np.ravel(mode.distances(frames)) for mode in RELATIONS.pairs[names].modes]
+
+    metres, radians, out, aside, turn, _ = nearest(
+        LORE.modes(*names)[0], anchor[0][0], anchor[1][0, :2] / 2, member[0][0], member[1][0, :2] / 2
+    )
+    assert metres + LEVER * radians == pytest.approx(min(m + LEVER * r for m, r in distances((x, y), yaw)), abs=1e-6)
+    exact = at_anchor(np.array([0.3, -0.2, 0.0, 0.7]), np.array([out, aside, turn]))
+    assert min(m + LEVER * r for m, r in distances(exact[:2], exact[2])) == pytest.approx(0.0, abs=2e-3)
 
 
 @settings(max_examples=8, deadline=None)
@@ -181,7 +190,7 @@ def test_a_relation_counts_as_broken_when_its_anchor_is_elsewhere_or_gone():
 
 def test_what_belongs_into_corners_goes_into_the_corner_that_it_is_near():
     sides = [
-        WallRelation("wardrobe", side, Span("outside", 0.0, 0.02, 0.05), Span("wall", 0.0, 0.0, 0.0), 100, 0.4, 0.0)
+        WallRelation("wardrobe", side, 100, 0.4, 0.0, Span("outside", 0.0, 0.02, 0.05), Span("wall", 0.0, 0.0, 0.0))
         for side in ("left", "right")
     ]
     walls = [*(w for found in RELATIONS.walls.values() for w in found), *sides]
@@ -272,7 +281,7 @@ def test_sofa_and_coffee_table_keep_their_distance_from_the_dining_table(kept):
 @pytest.mark.parametrize("spread", [0.0, 0.2])
 def test_chairs_stay_askew_where_chairs_are(spread):
     turn = Span("anchor", math.pi - spread, math.pi, math.pi + spread)
-    seat = Mode("front", Span("outside", -0.2, -0.1, 0.1), Span("share", -0.1, 0.0, 0.1), turn, 1.0)
+    seat = Mode("front", 1.0, Span("outside", -0.2, -0.1, 0.1), Span("share", -0.1, 0.0, 0.1), turn)
     learnt = LearntRelations(relations([pair("dining_table", "dining_chair", seat)], []))
     wished = [drafted(ASSETS["table"], 2.5, 2.0), drafted(ASSETS["chair"], 2.5, 1.45, math.pi - 0.15, number=1)]
     table, chair = separate(site(room(), "room"), wished, ASSETS, learnt).placements

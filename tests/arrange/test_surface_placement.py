@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.arrange import Laying, ThingsSettings
-from pipeline.arrange.surfaces import make_surfaces
+from pipeline.arrange.surfaces import surfaces
 from pipeline.entities.home import Placement
 from pipeline.verify import Policy, verify_home
 from tests.geometry.furniture import LIBRARY, SQUARE, asset, block, box, chest, cupboard, home, link, placed
@@ -19,7 +19,7 @@ THINGS = ("cup", "book", "flip", "book", "cup")
 
 
 def tops(made):
-    found = make_surfaces(made)
+    found = surfaces(made)
     return sorted((round(float(z), 3), int(i), bool(h)) for z, i, h in zip(found.tops[:, 4], found.link, found.hidden, strict=True))
 
 

@@ -157,7 +157,7 @@ def test_a_home_is_the_same_whatever_the_command(root):
     """`sfgen shard` makes the homes that sample and postopt made in two steps: same rows, same files."""
     from pipeline import params
     from pipeline.homes.factory import load_factory
-    from pipeline.homes.settings import DatasetSettings, requests_of
+    from pipeline.homes.prompt_mix import DatasetSettings, requests_of
 
     tree = params.read(root / "params.yaml")
     asked = requests_of(params.section(DatasetSettings, tree, "dataset"), root, tree["seed"])

@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline import taxonomy
 from pipeline.entities.home import Placement
-from pipeline.homes.exports import files_of
+from pipeline.homes.outcomes import files_of
 from pipeline.homes.rows import home_rows
 from pipeline.shards import Header, add_part, commit_shard, gather, open_or_create
 from pipeline.usd.library import write_asset

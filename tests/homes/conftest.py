@@ -15,7 +15,7 @@ from pipeline.entities.files import save_asset
 from pipeline.floorplan.program.priors import PriorSettings
 from pipeline.homes.factory import Factory
 from pipeline.homes.library import Library
-from pipeline.homes.settings import ShardSettings
+from pipeline.homes.resources import ShardSettings
 from pipeline.relations.model import relations
 from pipeline.retrieval.index import AssetIndex
 from tests.judging import SETTINGS

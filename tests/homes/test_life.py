@@ -7,8 +7,8 @@ from pipeline.homes import life as lives
 from pipeline.homes.furnish import Draft
 from pipeline.homes.life import HomeLife, RoomTries, State
 from pipeline.homes.request import Request, RoomJob
+from pipeline.homes.resources import ShardSettings
 from pipeline.homes.room_finishing import RoomResult
-from pipeline.homes.settings import ShardSettings
 
 
 @pytest.fixture

@@ -2,8 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.homes.reasons import REASONS
-from pipeline.homes.rows import reject_row
+from pipeline.homes.rows import REASONS, reject_row
 
 DOCS = Path(__file__).resolve().parents[2] / "docs" / "reasons.md"
 

@@ -3,7 +3,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from pipeline import taxonomy
 from pipeline.floorplan.program.floor_program import Furniture
 from pipeline.homes import room_finishing as finishing
 from tests.geometry.furniture import one_room
@@ -27,7 +26,7 @@ def test_the_arranger_has_the_robot_and_the_raster_of_the_judge(monkeypatch, cha
     index = SimpleNamespace(favouring=lambda _style, *, wished: SimpleNamespace(smaller=wished))
     settings = replace(SETTINGS, cell=0.08, robot=replace(SETTINGS.robot, **change))
     with pytest.raises(SeenError) as seen:
-        finishing.finish(draft, {}, index, None, None, settings, taxonomy.load())
+        finishing.finish(draft, SimpleNamespace(library={}, index=index, learnt=None, postopt=None, verify=settings))
     site = seen.value.args[0]
     assert site.robot == replace(settings.robot, radius=settings.robot.radius + finishing.MARGIN)
     assert site.floor.raster.cell == settings.cell
@@ -46,5 +45,5 @@ def test_a_room_whose_only_cooker_nobody_gets_to_is_tried_again():
     )
     draft = SimpleNamespace(job=job, placements=placements)
     for unreached, failure in ((set(), ""), ({"one"}, ""), ({"one", "two"}, "out_of_reach"), ({"basin"}, "out_of_reach")):
-        result = finishing.RoomResult(draft, placements, unreached=frozenset(unreached)).judged(taxonomy.load())
+        result = finishing.RoomResult(draft, placements, unreached=frozenset(unreached)).judged()
         assert result.failure == failure

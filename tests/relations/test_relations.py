@@ -9,8 +9,9 @@ from shapely import affinity
 from shapely.geometry import box
 
 from pipeline.errors import ContentError
-from pipeline.relations import files, learning
-from pipeline.relations.arrangement import Thing, from_rows, make_arrangement
+from pipeline.relations import learning
+from pipeline.relations.arrangement import from_rows, make_arrangement
+from pipeline.relations.model import VERSION, Relations
 from tests.relations.making import bedroom, bedrooms
 
 
@@ -19,21 +20,10 @@ def known():
     return learning.fit(bedrooms(np.random.default_rng(0), 120))
 
 
-BED = Thing("double_bed", 3.0, 2.0, 0.7, (2.0, 2.1, 0.5))
-
-
-def local(anchor, pose):
-    c, s = np.cos(anchor.yaw), np.sin(anchor.yaw)
-    dx, dy = pose.x - anchor.x, pose.y - anchor.y
-    return c * dx + s * dy, c * dy - s * dx
-
-
-def outline(thing):
-    return affinity.translate(
-        affinity.rotate(box(*(-0.5 * s for s in thing.size[:2]), *(0.5 * s for s in thing.size[:2])), thing.yaw, (0, 0), use_radians=True),
-        thing.x,
-        thing.y,
-    )
+def outline(room, name):
+    k = room.categories.index(name)
+    half = room.size[k, :2] / 2
+    return affinity.translate(affinity.rotate(box(*-half, *half), room.yaw[k], (0, 0), use_radians=True), *room.position[k, :2])
 
 
 def test_nightstands_stand_left_and_right_of_a_bed_flush_with_its_head(known):
@@ -52,12 +42,7 @@ def test_what_only_shares_the_walls_has_no_relation(known):
 
 
 def test_how_far_things_keep_from_each_other_is_known_where_one_walks_between_them(known):
-    gaps = []
-    for room in bedrooms(np.random.default_rng(0), 120):
-        things = {name: room.thing(k) for k, name in enumerate(room.categories)}
-        if {"double_bed", "tv_stand"} <= things.keys():
-            bed, tv = (outline(things[name]) for name in ("double_bed", "tv_stand"))
-            gaps.append(bed.distance(tv))
+    gaps = [outline(room, "double_bed").distance(outline(room, "tv_stand")) for room in bedrooms(np.random.default_rng(0), 120)]
     assert known.distances["double_bed", "tv_stand"] == pytest.approx(min(np.percentile(gaps, 5), learning.WALK[1]), abs=0.05)
     assert ("double_bed", "nightstand") not in known.distances
     assert all(learning.WALK[0] <= distance <= learning.WALK[1] for distance in known.distances.values())
@@ -80,44 +65,6 @@ def test_backs_are_at_the_wall(known):
         assert abs(wall.gap.middle) < 0.04
 
 
-def test_poses_know_the_sizes(known):
-    size = (0.6, 0.3, 0.5)
-    poses = known.poses(BED, "nightstand", size)
-    places = sorted(local(BED, pose) for pose in poses)
-    assert places[0][0] == pytest.approx(-(1.0 + 0.055 + 0.3), abs=0.03)
-    assert places[1][0] == pytest.approx(1.0 + 0.055 + 0.3, abs=0.03)
-    assert all(y == pytest.approx(1.05 - 0.15, abs=0.01) for _, y in places)
-    for pose in poses:
-        found = known.nearest(BED, Thing("nightstand", pose.x, pose.y, pose.yaw, size))
-        assert found.metres == pytest.approx(0, abs=1e-3)
-        assert found.radians == pytest.approx(0, abs=1e-3)
-        assert found.holds
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_what_is_off_is_told_how_far_and_where_it_would_hold(known, seed):
-    rng = np.random.default_rng(seed)
-    size = (0.4, 0.4, 0.5)
-    pose = known.poses(BED, "nightstand", size)[0]
-    shift = rng.uniform(-0.3, 0.3, 2)
-    off = Thing("nightstand", pose.x + shift[0], pose.y + shift[1], pose.yaw + rng.uniform(-0.4, 0.4), size)
-    found = known.nearest(BED, off)
-    assert 0 < found.metres <= np.hypot(*shift) + 0.2
-    exact = known.nearest(BED, Thing("nightstand", *found.pose[:3], size))
-    assert exact.metres == pytest.approx(0, abs=2e-3)
-    assert exact.radians == pytest.approx(0, abs=2e-3)
-    assert not found.holds or np.hypot(*shift) < 0.1
-
-
-def test_a_pose_that_holds_is_left_where_it_is(known):
-    room = bedroom(np.random.default_rng(5), turned=0.3)
-    things = [room.thing(k) for k in range(len(room.categories))]
-    k, found = known.best(things[1], [things[0], *things[3:]])
-    assert k == 0
-    if found.metres == found.radians == 0:
-        assert np.allclose(found.pose[:2], [things[1].x, things[1].y], atol=1e-6)
-
-
 def test_relations_do_not_depend_on_where_the_rooms_lie(known):
     rng = np.random.default_rng(0)
     rooms = [bedroom(rng, turned=rng.integers(4) * np.pi / 2 + 0.6) for _ in range(120)]
@@ -129,28 +76,24 @@ def test_relations_do_not_depend_on_where_the_rooms_lie(known):
 
 def test_the_same_rooms_give_the_same_relations_and_json_keeps_them(known, tmp_path):
     again = learning.fit(bedrooms(np.random.default_rng(0), 120))
-    assert files.to_json(again) == files.to_json(known)
-    files.save(tmp_path / "relations.json", known)
-    back = files.load(tmp_path / "relations.json")
-    assert files.to_json(back) == files.to_json(known)
-    assert back.pairs.keys() == known.pairs.keys()
-    assert back.walls.keys() == known.walls.keys()
-    assert back.distances == known.distances
+    assert again == known
+    known.save(tmp_path / "relations.json")
+    assert Relations.load(tmp_path / "relations.json") == known
 
 
 def test_files_that_hold_no_relations_are_refused(tmp_path):
     with pytest.raises(ContentError, match="missing"):
-        files.load(tmp_path / "relations.json")
+        Relations.load(tmp_path / "relations.json")
     for text in (
         "",
         "[]",
         "{}",
         json.dumps({"version": 99}),
-        json.dumps({"version": files.VERSION, "pairs": [["a"]], "walls": [], "distances": []}),
+        json.dumps({"version": VERSION, "pairs": [["a"]], "walls": [], "distances": []}),
     ):
         (tmp_path / "relations.json").write_text(text)
         with pytest.raises(ContentError):
-            files.load(tmp_path / "relations.json")
+            Relations.load(tmp_path / "relations.json")
 
 
 def test_no_rooms_know_nothing():

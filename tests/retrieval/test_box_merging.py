@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from pipeline import seeds
-from pipeline.retrieval.box_merging import merged_boxes, volume
+from pipeline.retrieval.index import merged_boxes, volume
 from pipeline.retrieval.wall_alignment import keep_at_walls
 
 

@@ -5,6 +5,7 @@ from pipeline import seeds
 from pipeline.errors import ContentError
 from pipeline.retrieval.index import AssetIndex
 from pipeline.retrieval.settings import RetrievalSettings
+from pipeline.retrieval.taste import Taste, tasteful
 
 SHELVES = {"cabinet": 30, "dining_chair": 12, "bathtub": 1}
 
@@ -35,6 +36,11 @@ def index():
     return AssetIndex.from_tables(*tables())
 
 
+def matches(index, categories, sizes, latents):
+    """What is nearest, whatever it looks like."""
+    return tasteful(index, Taste(), categories, sizes, latents, np.zeros((len(categories), 3)))
+
+
 def asks(index, rows):
     raw = index.latents[rows] * index.spread + index.mean
     return [index.categories[r] for r in rows], index.sizes[rows], raw
@@ -42,7 +48,7 @@ def asks(index, rows):
 
 def test_an_asset_that_is_asked_for_exactly_is_found(index):
     rows = np.flatnonzero(index.openable | (np.array(index.categories) != "cabinet"))
-    for match, row in zip(index.match(*asks(index, rows)), rows, strict=True):
+    for match, row in zip(matches(index, *asks(index, rows)), rows, strict=True):
         assert match.asset_id == index.asset_ids[row]
         assert match.distance == pytest.approx(0, abs=1e-9)
         np.testing.assert_allclose(match.scale, 1)
@@ -53,7 +59,7 @@ def test_matches_are_of_the_category_and_nearest(index):
     rng = seeds.generator(1, "asks")
     categories = [str(c) for c in rng.choice(list(SHELVES), 50)]
     sizes, latents = rng.uniform(0.3, 2.2, (50, 3)), rng.normal(0, 1, (50, 32))
-    for p, match in enumerate(index.match(categories, sizes, latents)):
+    for p, match in enumerate(matches(index, categories, sizes, latents)):
         shelf = index.shelves[categories[p]]
         assert index.categories[index.row(match.asset_id)] == categories[p]
         assert match.distance == pytest.approx(index.distance(shelf, sizes[p : p + 1], latents[p : p + 1]).min())
@@ -62,14 +68,14 @@ def test_matches_are_of_the_category_and_nearest(index):
 def test_one_by_one_is_as_all_at_once(index):
     rng = seeds.generator(2, "asks")
     categories, sizes, latents = ["cabinet", "dining_chair"] * 5, rng.uniform(0.3, 2.2, (10, 3)), rng.normal(0, 1, (10, 32))
-    whole = index.match(categories, sizes, latents)
+    whole = matches(index, categories, sizes, latents)
     for p in range(10):
-        single = index.match(categories[p : p + 1], sizes[p : p + 1], latents[p : p + 1])[0]
+        single = matches(index, categories[p : p + 1], sizes[p : p + 1], latents[p : p + 1])[0]
         assert (single.asset_id, single.distance) == (whole[p].asset_id, pytest.approx(whole[p].distance))
 
 
 def test_what_the_library_lacks_is_none(index):
-    assert index.match(["sauna"], np.ones((1, 3)), np.zeros((1, 32))) == [None]
+    assert matches(index, ["sauna"], np.ones((1, 3)), np.zeros((1, 32))) == [None]
 
 
 def test_the_order_of_the_tables_does_not_matter(index):
@@ -77,7 +83,7 @@ def test_the_order_of_the_tables_does_not_matter(index):
     again = AssetIndex.from_tables(assets[::-1], latents[::-1], joints)
     rng = seeds.generator(3, "asks")
     sizes, latent = rng.uniform(0.3, 2.2, (20, 3)), rng.normal(0, 1, (20, 32))
-    ids = [[m.asset_id for m in i.match(["cabinet"] * 20, sizes, latent)] for i in (index, again)]
+    ids = [[m.asset_id for m in matches(i, ["cabinet"] * 20, sizes, latent)] for i in (index, again)]
     assert ids[0] == ids[1]
 
 
@@ -86,12 +92,12 @@ def test_ties_go_to_the_smaller_id():
     assets = [{"asset_id": a, "category": "c", "split": "train", "size": size, "articulated": False, "openable": False} for a in "zyx"]
     latents = [{"asset_id": a, "latent": [0.0] * 32} for a in "xyz"]
     twins = AssetIndex.from_tables(assets, latents)
-    assert twins.match(["c"], np.array([size]), np.zeros((1, 32)))[0].asset_id == "x"
+    assert matches(twins, ["c"], np.array([size]), np.zeros((1, 32)))[0].asset_id == "x"
 
 
 def test_articulated_assets_are_never_scaled_and_static_ones_little(index):
     rng = seeds.generator(4, "asks")
-    for match in index.match(["cabinet"] * 60 + ["bathtub"] * 5, rng.uniform(0.3, 3.0, (65, 3)), rng.normal(0, 1, (65, 32))):
+    for match in matches(index, ["cabinet"] * 60 + ["bathtub"] * 5, rng.uniform(0.3, 3.0, (65, 3)), rng.normal(0, 1, (65, 32))):
         row = index.row(match.asset_id)
         np.testing.assert_allclose(match.size, index.sizes[row] * match.scale)
         if index.articulated[row]:
@@ -105,7 +111,7 @@ def test_what_opens_is_preferred():
     share = []
     for factor, offset in ((1.0, 0.0), (1.5, 0.15), (10.0, 1.0)):
         built = AssetIndex.from_tables(*tables(), RetrievalSettings(prefer_openable=factor, prefer_offset=offset))
-        share.append(np.mean([m.openable for m in built.match(["cabinet"] * 200, sizes, latents)]))
+        share.append(np.mean([m.openable for m in matches(built, ["cabinet"] * 200, sizes, latents)]))
     assert share[0] < share[1] <= share[2]
 
 
@@ -138,7 +144,7 @@ def test_lookup_tells_sizes_and_sweeps_of_what_match_finds(index):
     placed, sweeps = index.lookup(categories, sizes, latents)
     assert sweeps.shape == (2, 3, 4, 2, 3)
     for b, n in ((0, 0), (0, 2), (1, 0), (1, 1)):
-        match = index.match([categories[b][n]], sizes[b, n][None], latents[b, n][None])[0]
+        match = matches(index, [categories[b][n]], sizes[b, n][None], latents[b, n][None])[0]
         np.testing.assert_allclose(placed[b, n], match.size)
         assert np.isfinite(sweeps[b, n]).any() == match.openable
     np.testing.assert_allclose(placed[0, 1], sizes[0, 1])

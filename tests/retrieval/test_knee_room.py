@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from pipeline.retrieval.index import AssetIndex
-from pipeline.retrieval.knee_room import has_knee_room
+from pipeline.retrieval.index import AssetIndex, has_knee_room
 
 DESK = np.array([1.2, 0.6, 0.75])
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from pipeline.retrieval.neighbours import part
-from pipeline.retrieval.wall_alignment import CLEAR, put_before_walls
+from pipeline.retrieval.wall_alignment import CLEAR, part, put_before_walls
 
 ROOM = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
 SIZE = np.array([1.0, 0.6, 0.9])

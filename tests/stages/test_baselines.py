@@ -1,7 +1,7 @@
 import json
 
-from pipeline.relations import files, learning
-from pipeline.relations.split import rooms_of
+from pipeline.relations import learning
+from pipeline.relations.arrangement import rooms_of
 from stages import baselines
 from tests.stages.test_train import make_root
 
@@ -26,7 +26,7 @@ def test_switched_off_it_does_nothing(tmp_path):
 
 def test_all_are_trained_for_the_same_time_and_furnish_the_same_rooms(tmp_path):
     make_root(tmp_path)
-    files.save(tmp_path / "data/tables/relations.json", learning.fit(rooms_of(tmp_path / "data/tables", "train")))
+    learning.fit(rooms_of(tmp_path / "data/tables", "train")).save(tmp_path / "data/tables/relations.json")
     write_params(tmp_path, on=True)
     baselines.main(tmp_path)
     found = json.loads((tmp_path / "metrics/baselines.json").read_text())

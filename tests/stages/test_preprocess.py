@@ -10,7 +10,7 @@ from pipeline import params, tables
 from pipeline.entities.files import load_asset
 from pipeline.errors import ContentError
 from pipeline.manifest import sha256_file
-from pipeline.relations import files
+from pipeline.relations.model import Relations
 from pipeline.sources.settings import PreprocessSettings
 from schemas import ASSET_JOINTS, ASSET_PARTS, ASSETS, OBJECTS, OPENINGS, REJECTS, ROOMS, SCENES
 from stages.preprocess import main
@@ -152,7 +152,7 @@ def test_settings_are_strict(tmp_path):
 
 
 def test_relations_are_written_beside_the_tables(made):
-    known = files.load(made / "data/tables/relations.json")
+    known = Relations.load(made / "data/tables/relations.json")
     assert not known.pairs  # six houses are too few to know anything
 
 

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from pipeline import taxonomy
 from pipeline.entities.plan import OpeningKind
 from pipeline.errors import ContentError
 from pipeline.floorplan.imports.sketch import MAX_OPENINGS, MAX_ROOMS, Floats, Sketch, SketchOpening, SketchRoom, identifiers, refuse

@@ -16,10 +16,7 @@ from pipeline.sources.rows import split_of
 from pipeline.sources.threed_front.floors import Floor
 from pipeline.sources.threed_front.furniture import Placed
 from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord
-from schemas.objects import OBJECTS
-from schemas.openings import OPENINGS
-from schemas.rooms import ROOMS
-from schemas.scenes import SCENES
+from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 from schemas.table import Table
 
 THIN = 0.05  # [m] what is flatter lies under one's feet
