@@ -152,7 +152,11 @@ def _groups(program: FloorProgram, links: Sequence[Link]) -> list[frozenset[str]
         if link.opens and not ends & used:
             kept.append((link.a, link.b))
             used |= ends
-    return list(dict.fromkeys(frozenset(hops(kept, r.id)) for r in program.rooms))
+    groups: list[frozenset[str]] = []
+    for room in program.rooms:
+        if not any(room.id in group for group in groups):
+            groups.append(frozenset(hops(kept, room.id)))
+    return groups
 
 
 def _root(program: FloorProgram, links: Sequence[Link]) -> str:

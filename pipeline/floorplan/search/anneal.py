@@ -9,6 +9,7 @@ from pipeline.floorplan.search.grid import Floats, Ints, Labels, Measures, empty
 from pipeline.floorplan.search.spec import Spec, tree
 from pipeline.geometry.compiled import borrowing
 
+Schedule = tuple[float, float, float, int]  # as `anneal` takes it
 DRAWS = 8  # uniform numbers that one proposal takes
 LINE, PAIR, SIDE, PART, SWAP = 0.35, 0.60, 0.78, 0.97, 1.0  # cumulative shares of the moves
 
@@ -143,15 +144,7 @@ def _copy_all(source: Labels, target: Labels) -> None:
 
 @borrowing
 def anneal(
-    best: Labels,
-    spec: Spec,
-    edges: Ints,
-    out: Measures,
-    scratch: Scratch,
-    weights: Terms,
-    fixed: Ints,
-    draws: Floats,
-    schedule: tuple[float, float, float, int],
+    best: Labels, spec: Spec, edges: Ints, out: Measures, scratch: Scratch, weights: Terms, fixed: Ints, draws: Floats, schedule: Schedule
 ) -> tuple[float, float, Terms, int, int]:
     """Anneal from `best` and leave the best plan there; return its energy, hard violation (0: all hold), terms, moves accepted and evaluated.
 
