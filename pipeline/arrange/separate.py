@@ -70,20 +70,15 @@ def separate(
     distances = learnt.distances([item.placement.category for item in items])
     losses = [0] * len(items)
     first: list[int] = []
-    led: frozenset[int] = frozenset()
-    best: dict[int, Placement] = {}
-    astray: list[int] = []
-    unreached: frozenset[int] = frozenset()
+    led = unreached = frozenset[int]()
+    best, astray = dict[int, Placement](), list[int]()
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
         runs, laid = lay_runs(items, site)
         poses, bonds = exact_poses(items, site, learnt, settings, laid)
         occupancy = Occupancy(site, items, settings, distances, [i for i, bond in enumerate(bonds) if bond is not None])
         Settling(occupancy, poses, bonds, runs, learnt, led, careful=number > 0).settle_all(first, bulk=number <= 1)
-        sound = True
-        if number == 0:  # later the floor has been looked at for each group
-            missed = occupancy.out_of_reach()
-            sound, occupancy.unreached = missed is not None, missed or frozenset()
+        sound = number > 0 or _look_at_floor(occupancy)  # later it has been looked at for each group
         apart = broken(bonds, items, occupancy.poses, occupancy.there, learnt)
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
@@ -108,15 +103,19 @@ def separate(
             changed = _exchange(items, crowded, shrink)
             if not (lost or changed or hidden or wide):
                 break
-        first = [
-            *(i for i in lost if items[i].mount != "wall"),  # a wall unit in the way of the run below it waits
-            *sorted(led),
-            *(i for i in hidden if number and i not in lost),
-            *(i for i in first if i not in (*lost, *led, *hidden)),
-        ]
+        waiting = [i for i in lost if items[i].mount != "wall"]  # a wall unit in the way of the run below it waits
+        unseen = [i for i in hidden if number and i not in lost]
+        first = [*waiting, *sorted(led), *unseen, *(i for i in first if i not in (*lost, *led, *hidden))]
     for i in () if keep_count else astray:
         del best[i]
     return _outcome(placements, best, unreached)
+
+
+def _look_at_floor(occupancy: Occupancy) -> bool:
+    """Note whom a robot does not get to; tell whether the floor hangs together."""
+    missed = occupancy.out_of_reach()
+    occupancy.unreached = missed or frozenset()
+    return missed is not None
 
 
 def _only_there(items: Sequence[Item], bond: Bond | None, i: int, learnt: LearntRelations) -> bool:

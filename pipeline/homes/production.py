@@ -153,10 +153,9 @@ def fill(
     spent = dict.fromkeys(missing, 0.0)  # CPU seconds by shard, and seconds of waiting for workers that kept silent
     while missing:
         allowed = {number: factory.shard.shard_seconds * len(dataset.header.indices(number)) for number in missing}
-        found = chunks(dataset, missing, asked, factory.chunk, workers)
         done = map_divisible(
             partial(make_chunk, recipe),
-            (replace(c, overdue=spent[c.shard] > allowed[c.shard]) for c in found),
+            (replace(c, overdue=spent[c.shard] > allowed[c.shard]) for c in chunks(dataset, missing, asked, factory.chunk, workers)),
             Chunk.pieces,
             workers=min(workers, -(-todo // LEAST)),
             scheduler=scheduler,
@@ -167,9 +166,8 @@ def fill(
         with closing(done):  # an error stops the workers at once
             for chunk, answer in done:
                 batch = lost_batch(chunk, answer, factory.seed) if isinstance(answer, Lost) else answer
-                spent[chunk.shard] += sum(batch.seconds.values())
-                if isinstance(answer, Lost) and answer.how == "hung":
-                    spent[chunk.shard] += answer.times * factory.shard.home_seconds
+                silent = answer.times * factory.shard.home_seconds if isinstance(answer, Lost) and answer.how == "hung" else 0.0
+                spent[chunk.shard] += sum(batch.seconds.values()) + silent
                 for empty in batch.empties:
                     if strict:
                         raise empty.error
