@@ -7,22 +7,21 @@ from typing import Any
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.marks import Mark
-from pipeline.floorplan.language.phrases import Element
 from pipeline.floorplan.language.room_links import Draft, join
-from pipeline.floorplan.language.rooms import HALLS, ROLES, Fact, Named, Reading
+from pipeline.floorplan.language.rooms import HALLS, Fact, Named, Reading
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
-from pipeline.floorplan.program.floor_program import MAX_ROOMS, Evidence, FloorProgram, Style
+from pipeline.floorplan.program.floor_program import MAX_ROOMS, FloorProgram, Style
 
 ABOUT = 0.1  # "about 75 m2" allows this much either way
 SAME = 0.02  # two totals that differ by less are one, said twice
 MOST_STOREYS, MOST_PEOPLE, MOST_COUNTED = 3, 8, 9
 PANORAMA = 8.5  # outside wall of a living room with panoramic glazing [m]
 LUXURY = 1.3
+NARROWEST_DOOR, WIDEST_DOOR, NARROWEST_CORRIDOR = 0.7, 1.2, 0.8  # clear [m]
 NARROW = {"min_aspect": 1.5, "max_aspect": 2.1}
 OUTLINES: Mapping[str, dict[str, Any]] = {"shape_l": {"shape": "L"}, "shape_t": {"shape": "T"}, "rectangle": {"shape": "rectangle"}, "narrow": NARROW, "chamfered": {"corners": "chamfered"}}  # fmt: skip
 SHELL = {"ceiling": ("ceiling",), "walls": ("inner_wall", "outer_wall"), "inner_walls": ("inner_wall",), "outer_walls": ("outer_wall",)}
-LIMITS = {"ceiling": (1.8, 8.0), "inner_wall": (0.05, 0.6), "outer_wall": (0.05, 0.6)}  # [m]
 SMALL = kinds("small")
 BESIDES = kinds("besides")
 STRANGERS = {"guest", "elder", "carer", "staff"}  # whose bedrooms are beside those of the people who live there
@@ -31,7 +30,7 @@ GROUND = kinds("ground")
 SORTS = kinds("sorts")
 
 
-def assemble(state: Reading, parsed: list[list[Element]]) -> FloorProgram:
+def assemble(state: Reading, parsed: list[list[Mark]]) -> FloorProgram:
     """Return the program of what was read; nothing is filled in."""
     draft, stock = Draft(state.heard), state.inventory
     _count(draft, state)
@@ -39,14 +38,23 @@ def assemble(state: Reading, parsed: list[list[Element]]) -> FloorProgram:
     for kind, e in state.banned:
         if not (kind in SORTS and any(r.surface and r.surface != e.text for r in stock.of(kind))):  # "no cellar but a pantry"
             draft.forbid("room_type", kind, None, None, Fact("ban", (), (), 0.0, e.first, e.last))
-    for fact in (f for f in state.facts if f.what == "beyond"):  # "a two-bedroom flat ... the third bedroom"
-        rooms = [stock.get(i) for i in fact.a]
-        what = f"{len(rooms)} {rooms[0].type.replace('_', ' ')}s are asked for, and then {fact.value:g}"
-        draft.refuse(what, "keep one of the two counts", [(fact.first, fact.last), *(r.span for r in rooms)])
     join(draft, state)
     _amounts(draft, state)
     _whole(draft, state)
     _style(draft, state)
+    if state.entrance:
+        into, e = state.entrance
+        draft.fields["entrance"] = {"into": into, "stated": True}
+        draft.cite(e.first, e.last, "entrance.into")
+    if state.outside:
+        owner, e = state.outside
+        theirs = [r.id for kind in ("kitchen", "bedroom") for r in stock.of(kind) if r.role in STRANGERS]
+        draft.fields["entrance"] = {**draft.fields.get("entrance", {}), "separate": [i for i in (*theirs, owner) if i][:1]}
+        draft.cite(e.first, e.last, "entrance.separate")
+    named, known = Draft(state.heard), {r.id for r in stock.rooms}
+    for e in (e for s in parsed for e in s if e.kind in {"np", "pron", "det"} and e.last > e.first):
+        for i in (i for i in e.ids if i in known):
+            named.cite(e.first, e.last, f"rooms.{i}")
     return FloorProgram.model_validate(
         {
             **draft.fields,
@@ -56,7 +64,7 @@ def assemble(state: Reading, parsed: list[list[Element]]) -> FloorProgram:
             "relations": draft.relations,
             "zones": draft.zones,
             "language": state.heard.lexicon.language,
-            "evidence": [*_room_evidence(parsed, state), *draft.evidence],
+            "evidence": [*named.evidence, *draft.evidence],
         }
     )
 
@@ -67,22 +75,13 @@ def _room(room: Named) -> dict[str, Any]:
     if not stated and room.size != 1.0:
         area["target"] = round(DEFAULTS[room.type].area * room.size, 2)
     same = ("id", "stated", "type", "level", "exterior_length", "window", "min_width")
-    role = room.role if room.role in ROLES - {"ensuite"} else ""
+    role = "" if room.role == "ensuite" else room.role
     return {
         **{f: getattr(room, f) for f in same},
         "role": role,
         "functions": tuple(sorted(room.functions)),
         "area": {**area, "stated": stated},
     }
-
-
-def _room_evidence(parsed: list[list[Element]], state: Reading) -> list[Evidence]:
-    """Return the evidence for the rooms themselves."""
-    known, cited = {r.id for r in state.inventory.rooms}, Draft(state.heard)
-    for e in (e for s in parsed for e in s if e.ids and e.kind in {"np", "pron", "det"} and e.last > e.first):
-        for i in (i for i in e.ids if i in known):
-            cited.cite(e.first, e.last, f"rooms.{i}")
-    return cited.evidence
 
 
 # how many rooms
@@ -181,10 +180,6 @@ def _amounts(draft: Draft, state: Reading) -> None:
         elif mark.value in SHELL:
             for field in SHELL[mark.value]:
                 draft.cite(mark.first, mark.last, f"shell.{field}")
-                low, high = LIMITS[field]
-                if not low <= mark.number <= high:
-                    what = f"{field.replace('_', ' ')} of {mark.number:g} m"
-                    draft.refuse(what, f"ask for {low:g} to {high:g} m", [(mark.first, mark.last)], f"shell.{field}")
                 draft.fields["shell"] = {**draft.fields.get("shell", {}), field: mark.number, "stated": True}
         elif mark.value in {"length", "doors", "corridors"}:
             _length(draft, mark, rooms)
@@ -221,14 +216,13 @@ def _total(draft: Draft, mark: Mark) -> None:
 
 def _length(draft: Draft, mark: Mark, rooms: Sequence[Named]) -> None:
     value, access = mark.number, draft.fields.setdefault("accessibility", {})
-    if mark.value == "doors" and 0.6 <= value <= 1.2:
-        access["min_door"] = max(value, 0.7)
+    if mark.value == "doors" and value <= WIDEST_DOOR:
+        access["min_door"] = max(value, NARROWEST_DOOR)
         draft.cite(mark.first, mark.last, "accessibility.min_door")
     elif mark.value == "corridors" or any(r.type in HALLS for r in rooms):
-        if 0.7 <= value <= 3.0:
-            access["min_corridor"] = max(value, 0.8)
-            draft.cite(mark.first, mark.last, "accessibility.min_corridor")
-    elif 1.0 <= value <= 20.0:
+        access["min_corridor"] = max(value, NARROWEST_CORRIDOR)
+        draft.cite(mark.first, mark.last, "accessibility.min_corridor")
+    elif mark.value == "length":
         for room in rooms:
             room.min_width = value
             draft.cite(mark.first, mark.last, f"rooms.{room.id}.min_width")
@@ -247,11 +241,8 @@ def _whole(draft: Draft, state: Reading) -> None:
         draft.cite(first, last, "storeys")
     if storeys > MOST_STOREYS:
         draft.refuse(f"{storeys} storeys are asked for", f"ask for {MOST_STOREYS} at most", said, "storeys")
-    single = [
-        e
-        for e in (flags.get("single"), *state.homes)
-        if e is not None and (e.kind == "flag" or e.text in state.heard.lexicon.sign("bungalow"))
-    ]
+    bungalow = state.heard.lexicon.sign("bungalow")
+    single = [e for e in (flags.get("single"), *state.homes) if e is not None and (e.kind == "flag" or e.text in bungalow)]
     above = [(e.first, e.last) for e in state.levels if e.value != "0"] or said
     if storeys > 1 and single and above:
         draft.refuse(
@@ -282,7 +273,6 @@ def _whole(draft: Draft, state: Reading) -> None:
         access |= {"min_door": max(access.get("min_door", 0.9), 0.9), "min_corridor": max(access.get("min_corridor", 1.2), 1.2)}
     for room in stock.of("living_room")[:1]:
         room.exterior_length = PANORAMA if told("panorama", f"rooms.{room.id}.exterior_length") else None
-    _entrance(draft, state)
 
 
 def _levels(state: Reading) -> None:
@@ -292,26 +282,10 @@ def _levels(state: Reading) -> None:
         for room in rooms:  # "front room, kitchen, two bedrooms and a bathroom above": not all of the list
             room.level = None if room.type in GROUND else room.level
     for name, level in sorted(state.heights.items(), key=lambda h: h[0] == "*"):
-        zone = set(state.zones[name][0] or state.inventory.zone(name)) if name in state.zones else set()
+        zone = state.zones[name][0] or state.inventory.zone(name) if name in state.zones else ()
         for room in rooms:
             if room.id in zone or (name == "*" and room.level is None and room.type != "staircase"):
                 room.level = level
-
-
-def _entrance(draft: Draft, state: Reading) -> None:
-    entrance: dict[str, Any] = {}
-    if state.entrance:
-        into, e = state.entrance
-        entrance = {"into": into, "stated": True}
-        draft.cite(e.first, e.last, "entrance.into")
-    if state.outside:
-        owner, e = state.outside
-        stock = state.inventory
-        owners = [r.id for kind in ("kitchen", "bedroom") for r in stock.of(kind) if r.role in {"elder", "guest", "staff", "carer"}]
-        if separate := (owners or [owner])[0]:
-            entrance["separate"] = [separate]
-        draft.cite(e.first, e.last, "entrance.separate")
-    draft.fields["entrance"] = entrance
 
 
 def _style(draft: Draft, state: Reading) -> None:

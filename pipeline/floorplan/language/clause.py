@@ -1,11 +1,14 @@
 """One sentence while it is read: what its words so far are about, who stands in front of a relation and behind it, sizes against each other, storeys."""
 
 import itertools
+import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 from pipeline.floorplan.language.marks import Mark
-from pipeline.floorplan.language.phrases import Element, backward, heads
-from pipeline.floorplan.language.rooms import FRONT, HALLS, PRIVATE, SOCIAL, Group, Reading, name
+from pipeline.floorplan.language.phrases import backward, heads
+from pipeline.floorplan.language.rooms import FRONT, HALLS, PRIVATE, Group, Reading, name
+from pipeline.floorplan.program.defaults import DEFAULTS
 
 LIGHT = {"det", "size", "adj", "verb", "word", "flag"}  # between a relation and its room
 WIDE = {"leads", "between", "chain", "avoid", "except"}  # relations to lists
@@ -14,13 +17,16 @@ LISTING = {"comma", "and", "or"}
 LIKE = 0.15  # two rooms are alike where they differ by less
 BESIDE = {"near", "wall"}  # what such a relation joins lies on one storey
 
+NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
+HUGE, LARGE, MORE, LISTED = 5.0, 2.5, 1.6, 1.3  # times the usual area of the room in front: from there on an area is the home's
+
 
 def named_rooms(group: Group) -> Group:
     """Return the rooms of a group, without "all rooms" and zones."""
     return tuple(i for i in group if not i.startswith("*"))
 
 
-def ids_of(phrases: Iterable[Element]) -> Group:
+def ids_of(phrases: Iterable[Mark]) -> Group:
     """Return the rooms of phrases, each once."""
     return tuple(dict.fromkeys(i for x in phrases for i in x.ids))
 
@@ -28,42 +34,35 @@ def ids_of(phrases: Iterable[Element]) -> Group:
 class Clause:
     """The state of reading one sentence."""
 
-    def __init__(self, state: Reading, sentence: list[Element]) -> None:
+    def __init__(self, state: Reading, sentence: list[Mark]) -> None:
         self.state, self.sentence = state, sentence
         self.stock = state.inventory
-        self.run: list[Element] = []  # the list of phrases in front of the next relation
+        self.run: list[Mark] = []  # the list of phrases in front of the next relation
         self.subject: Group = ()
         self.latest: Group = ()
         self.objects: Group = ()
-        self.waiting: tuple[Element, Group] | None = None  # a relation in front of its subject: "next to the kitchen lies ..."
-        self.negative: Element | None = None
+        self.waiting: tuple[Mark, Group] | None = None  # a relation in front of its subject: "next to the kitchen lies ..."
+        self.negative: Mark | None = None
         self.verb = self.relative = self.single = False
-        self.owner = self.owning = ""
-        self.only: Element | None = None
-        self.factor: Element | None = None
-        first = next(
-            (e for e in sentence if e.kind in {"np", "level", "zone", "every", "pron"} or e.value in {"other", "both", "all"}), None
-        )
+        self.owner = self.owning = ""  # "the grandparents", and their bedroom
+        self.only: Mark | None = None
+        self.factor: Mark | None = None
+        first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every", "pron"} or e.value in {"other", "all"}), None)
         self.forward = first is not None and first.kind == "level"  # storeys stand in front of their rooms
         self.level: int | None = None
         self.left_out: Group = ()  # "except the guest room, each has ..."
 
-    def near(self, k: int) -> Element | None:
+    def near(self, k: int) -> Mark | None:
         """Return the element at k, None beyond the ends."""
         return self.sentence[k] if 0 <= k < len(self.sentence) else None
 
-    def ahead(self, k: int, *skipped: str) -> Element | None:
+    def ahead(self, k: int, *skipped: str) -> Mark | None:
         """Return the first element from k on that is of no skipped kind."""
         return next((x for x in self.sentence[k:] if x.kind not in skipped), None)
 
-    def says(self, e: Element, sign: str) -> bool:
+    def says(self, e: Mark, sign: str) -> bool:
         """Whether a word of an element belongs to a closed class."""
         return bool(self.state.heard.lexicon.sign(sign) & set(e.text.split()))
-
-    def part(self, k: int) -> Group:
-        """Return the rooms named between the last comma and k."""
-        start = max((j for j, x in enumerate(self.sentence[:k]) if x.kind == "comma"), default=-1)
-        return ids_of(x for x in self.sentence[start + 1 : k] if x.kind == "np") if start >= 0 else ()
 
     def ends(self, k: int) -> bool:
         """Whether a part of the sentence ends in front of k."""
@@ -85,17 +84,17 @@ class Clause:
         """Whether a negation stands just in front of the element at k."""
         return any(x.kind == "neg" for x in self.sentence[max(0, k - 3) : k])
 
-    def give(self, things: Group, owners: Group, e: Element) -> None:
+    def give(self, things: Group, owners: Group, e: Mark) -> None:
         """Let rooms belong to others."""
         self.stock.belongings.update(things)
         self.state.say("own", things, owners, e)
 
-    def measures(self, e: Element) -> None:
+    def measures(self, e: Mark) -> None:
         """Note the areas of a phrase."""
-        self.state.amounts += self.shares(e, tuple(e.ids))
+        self.state.amounts += self.shares(e, e.ids)
         e.amounts = []
 
-    def shares(self, e: Element, ids: Group) -> list[tuple[Mark, Group | None]]:
+    def shares(self, e: Mark, ids: Group) -> list[tuple[Mark, Group | None]]:
         """Return the amounts of a phrase, each with its rooms: of several areas one each."""
         areas = [m for m in e.amounts if m.is_size]
         dealt = [(m, ids[k : k + 1] if len(areas) > 1 else ids) for k, m in enumerate(areas)]
@@ -106,12 +105,12 @@ class Clause:
         self.latest, self.objects, self.subject = rooms, objects or rooms, subject or rooms
         self.run, self.verb, self.relative = [], False, False
 
-    def stands_for(self, e: Element, ids: Group) -> None:
+    def stands_for(self, e: Mark, ids: Group) -> None:
         """Let an element that is no phrase be the list in front of the next relation."""
-        e.ids, self.latest = list(ids), ids
-        self.run = [Element("np", first=e.first, last=e.last, text=e.text, ids=list(ids))]
+        e.ids = self.latest = ids
+        self.run = [Mark("np", first=e.first, last=e.last, text=e.text, ids=ids)]
 
-    def push(self, k: int, e: Element, ids: Group) -> None:
+    def push(self, k: int, e: Mark, ids: Group) -> None:
         """Take a group into the list in front of the next relation."""
         before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"det", "size", "adj"}), None)
         if before is None or not self.run or before.kind not in {*LISTING, "np", "amount", "open", "close"}:
@@ -120,36 +119,35 @@ class Clause:
         elif self.objects and set(ids_of(self.run)) == set(self.objects):
             self.run = []  # what was given to somebody is no part of a new list
         self.run.append(e)
-        e.ids, self.latest = list(ids), ids
+        e.ids = self.latest = ids
         if self.waiting and not set(ids) <= set(self.waiting[1]):
             self.subject = tuple(dict.fromkeys((*self.subject, *ids)))
         self.subject = self.subject or ids
 
     def rooms_at(self, k: int) -> Group:
         """Return the rooms of the phrase at k."""
-        return tuple(name(self.state, self.sentence, k, backward(self.sentence, k, self.level if self.forward else None)))
+        return name(self.state, self.sentence, k, backward(self.sentence, k, self.level if self.forward else None))
 
-    def point(self, e: Element, k: int, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun
+    def point(self, e: Mark, k: int, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun
         """Return the rooms that a pronoun stands for: after "but" the subject still, as an object what is not the subject `but`."""
-        if e.value == "it" and self.subject and k and self.sentence[k - 1].kind == "but":
+        if e.value == "it" and k and self.sentence[k - 1].kind == "but" and self.subject:
             return self.subject
-        here = [tuple(x.ids) for x in self.sentence[:k] if x.kind in {"np", "zone", "owner"} and x.ids]
+        here = [x.ids for x in self.sentence[:k] if x.kind in {"np", "zone"} and x.ids]
         groups = [*self.state.past, *here]
         if e.value == "it":
             if but:
                 return next((g for g in reversed(groups if here else self.state.past) if not set(g) & set(but)), ())
-            return here[0] if here else (self.state.topic or (self.state.past[-1] if self.state.past else ()))
-        single = tuple(dict.fromkeys(i for g in reversed(groups) for i in g if i not in but))
+            return here[0] if here else self.state.topic
+        each = tuple(dict.fromkeys(i for g in reversed(groups) for i in g if i not in but))  # of one alone, each
         if e.value == "both":
-            return groups[-1] if groups and len(groups[-1]) > 1 else single[:2]
+            return groups[-1] if groups and len(groups[-1]) > 1 else each[:2]
         plural: Group = next((g for g in reversed(groups) if len(g) > 1), groups[-1] if groups else ())
         if not plural or plural[0].startswith("*"):
             return plural
         kind = self.stock.get(plural[0]).type
         kind = self.state.parted if e.value == "rest" and any(r.open_slot for r in self.stock.of(self.state.parted)) else kind
         if e.value == "group" and len(plural) == 1:
-            same = [i for g in groups for i in g if i[0] != "*" and self.stock.get(i).type == kind]
-            return tuple(dict.fromkeys(same))
+            return tuple(i for i in each if i[0] != "*" and self.stock.get(i).type == kind)
         free = [r for r in self.stock.of(kind) if r.open_slot]
         if e.value in {"rest", "some"}:
             return tuple(r.id for r in free) or plural
@@ -162,7 +160,7 @@ class Clause:
 
     # who stands in front
 
-    def place(self, e: Element) -> int:
+    def place(self, e: Mark) -> int:
         """Return where an element stands."""
         return next((i for i, x in enumerate(self.sentence) if x is e), 0)
 
@@ -175,51 +173,32 @@ class Clause:
         """Return the rooms in front of a comparison: the last phrase, with those that an "and" joins to it."""
         return ids_of(self.run if self.coordinate() else self.run[-1:])
 
-    def subjects(self, k: int, e: Element) -> Group:
+    def subjects(self, k: int, e: Mark) -> Group:
         """Return who stands in front of a relation: the phrase, the list in front of a verb, or what the clause is about."""
         before = self.near(k - 1)
         if not self.run:
-            cue = next((x for x in reversed(self.sentence[:k]) if x.kind == "cue"), None)
-            chained = before is not None and before.kind == "np" and cue is not None and cue.value == e.value == "near"
-            if self.objects and self.relative != chained:
-                return self.objects  # "away from the bedroom, which is next to ...", "X next to Y next to Z"
-            return self.subject
+            chained = before is not None and before.kind == "np" and e.value == "near"
+            return self.objects if self.objects and self.relative != chained else self.subject  # "X next to Y, which is next to ..."
         last = self.run[-1]
-        comma = before is not None and before.kind == "comma"
-        if before is not None and before.kind in LISTING and self.objects and set(self.objects) == set(ids_of(self.run)):
-            cue_at = max((i for i, x in enumerate(self.sentence[:k]) if x.kind == "cue"), default=0)
-            if not any(x.kind in LISTING for x in self.sentence[cue_at + 1 : self.place(last)]):
-                return self.subject  # "a guest room with its own bath, away from ..."
-        alone = (
-            self.relative
-            or (comma and len(self.run) > 1 and not self.verb)
-            or (
-                e.value in {"door", "leads"} and self.says(e, "with") and not last.plural and not self.verb
-            )  # "a kitchen and a hall with a door to ..."
-            or (self.single and len(self.run) > 1 and not last.plural)
-            or not self.coordinate()  # "study downstairs, all bedrooms upstairs, garage connected to ...": commas part statements
-        )
-        if alone:
-            return tuple(last.ids)
-        verbal = (
-            self.verb
-            or e.value in {"leads", "away", "apart", "wall"}
-            or self.says(e, "finite")
-            or any(self.says(x, "finite") for x in self.sentence[self.place(last) + 1 : k])
-        )
-        if verbal:
-            return ids_of(self.run)
-        return self._tail() if e.value == "door" else tuple(last.ids)
+        cue_at = max((i for i, x in enumerate(self.sentence[:k]) if x.kind == "cue"), default=0)
+        one = bool(self.objects) and set(self.objects) == set(ids_of(self.run))
+        one = one and not any(x.kind in LISTING for x in self.sentence[cue_at + 1 : self.place(last)])
+        if one and before is not None and before.kind in LISTING:  # "a guest room with its own bath, away from ..."
+            return self.subject
+        door = e.value in {"door", "leads"} and self.says(e, "with") and not last.plural  # "a kitchen and a hall with a door to ..."
+        single = self.single and len(self.run) > 1 and not last.plural
+        alone = self.relative or (door and not self.verb) or single or not self.coordinate()  # commas part statements
+        finite = any(self.says(x, "finite") for x in (*self.sentence[self.place(last) + 1 : k], e))
+        verbal = self.verb or e.value in {"leads", "away", "apart", "wall"} or finite
+        if alone or not (verbal or e.value == "door"):
+            return last.ids
+        return ids_of(self.run if verbal else self.run[-1 - self._coordinated() :])
 
-    def _tail(self) -> Group:
-        """Return the phrases at the end of the list that "and" joins."""
-        tail = self.run[-1:]
-        for a, b in itertools.pairwise(reversed(self.run)):
-            between = [x.kind for x in self.sentence[self.place(b) + 1 : self.place(a)]]
-            if "comma" in between or "and" not in between:
-                break
-            tail.insert(0, b)
-        return ids_of(tail)
+    def _coordinated(self) -> int:
+        """Return how many phrases in front of the last one "and" joins to it, without a comma."""
+        ends = [self.place(x) for x in self.run]
+        between = ({x.kind for x in self.sentence[a + 1 : b]} for a, b in itertools.pairwise(ends))
+        return sum(1 for _ in itertools.takewhile(lambda kinds: "and" in kinds and "comma" not in kinds, reversed(list(between))))
 
     # who stands behind
 
@@ -230,17 +209,11 @@ class Clause:
         first = None
         while (e := self.near(k)) is not None:
             if e.kind == "np":
-                if (
-                    e.banned
-                    or (group and not joined)
-                    or (first is not None and not self._continues(k, cue, joined, first, left, len(group)))
-                ):
+                if e.banned or (group and not joined) or (first is not None and not self._continues(k, cue, joined, first, len(group))):
                     break
                 here = {self.stock.get(i).level for i in named_rooms(left)} if cue in BESIDE else set()
                 ids = name(self.state, self.sentence, k, self.level if self.forward else here.pop() if len(here) == 1 else None)
                 self.measures(e)
-                if self.sentence[k - 1].kind == "to":  # "open to the dining room and to the kitchen"
-                    self.state.understood(self.sentence[k - 1].first, self.sentence[k - 1].last)
                 group += [i for i in ids if i not in group and i not in left]
                 first, joined, end = first or e, "", k + 1
             elif not group and (standin := self._standin(k, e, left)) is not None:
@@ -254,36 +227,28 @@ class Clause:
             k += 1
         return tuple(group), end
 
-    def _passed(self, e: Element, named: bool, joined: str, cue: str) -> bool:
+    def _passed(self, e: Mark, named: bool, joined: str, cue: str) -> bool:
         """Whether an element may stand inside the list behind a relation."""
         if e.kind in {"det", "size", "adj", "word", "owner", "relative"}:
             return True
-        if e.kind == "colon":
-            return not named and cue == "leads"
-        return (e.kind in {"verb", "open"} and not named) or (e.kind == "to" and (not named or bool(joined)))
+        if e.kind == "to" and joined:  # "open to the dining room and to the kitchen"
+            self.state.understood(e.first, e.last)
+            return True
+        return (e.kind == "colon" and not named and cue == "leads") or (e.kind in {"verb", "open", "to"} and not named)
 
-    def _standin(self, k: int, e: Element, left: Group) -> tuple[Group, int] | None:
-        """Return the rooms that a pronoun, a zone, people or "everything" behind a relation stand for; None for other elements."""
-        ahead = self.near(k + 1)
-        phrase = ahead is not None and ahead.kind == "np"
+    def _standin(self, k: int, e: Mark, left: Group) -> tuple[Group, int] | None:
+        """Return the rooms that a pronoun, a zone or "everything" behind a relation stand for; None for other elements."""
+        phrase = (ahead := self.near(k + 1)) is not None and ahead.kind == "np"
         if e.kind in {"pron", "det"} and e.value in STANDINS and not (e.kind == "det" and phrase):
-            ids = self.point(e, k, left)
-            return tuple(i for i in ids if i not in left), k + 1
+            return tuple(i for i in self.point(e, k, left) if i not in left), k + 1
         if e.kind == "zone":
-            self.zone(k, e)
-            return tuple(e.ids), k + 1
+            zone(self, k, e)
+            return e.ids, k + 1
         if e.kind == "every":
             return ("*",), k + 1
         return None
 
-    def zone(self, k: int, e: Element) -> None:
-        """Take the rooms of a zone into the list."""
-        members = self.stock.zone(e.value)
-        e.ids = members or [f"*zone_{e.value}"]
-        self.state.zones.setdefault(e.value, (tuple(members), e))
-        self.push(k, e, tuple(e.ids))
-
-    def _continues(self, k: int, cue: str, joined: str, first: Element, left: Group, count: int) -> bool:  # noqa: PLR0911 - one answer per case
+    def _continues(self, k: int, cue: str, joined: str, first: Mark, count: int) -> bool:  # noqa: PLR0911 - one answer per case
         """Whether a list after a relation goes on with the phrase at k, or a new statement begins there."""
         e = self.sentence[k]
         ahead = self.ahead(k + 1, "det", "amount", "adj", "flag", "word")
@@ -291,11 +256,9 @@ class Clause:
             return True
         if (cue == "open" and e.type in PRIVATE and not e.definite) or (cue == "cmp" and "equal" in e.adjectives):
             return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
-        if ahead is not None and self._starts(ahead, cue):
+        if ahead is not None and self._starts(ahead):
             return False
         if cue == "leads" and joined == "comma":
-            if self.types(left) == {"bedroom"} and e.type in SOCIAL:
-                return False  # a bedroom leads to its bath, and the list of rooms goes on
             halls = bool(self.types(self.latest or self.subject) & HALLS)
             if self.relative and e.introduces and first.definite and not halls:
                 return False  # "a living room that opens to the kitchen, one bedroom and one bath"
@@ -309,26 +272,26 @@ class Clause:
             return "indefinite" in first.det and cue == "near"
         return e.definite or not first.definite or cue == "open"
 
-    def _starts(self, ahead: Element, cue: str) -> bool:
+    def _starts(self, ahead: Mark) -> bool:
         """Whether what follows a phrase makes it the subject of a statement of its own."""
         if ahead.kind == "cue":
-            return ahead.value != "except" and (ahead.value != "has" or self.says(ahead, "having")) and cue != "avoid"
+            return ahead.value not in {"except", "has"} or self.says(ahead, "having")
         return ahead.kind in {"verb", "cmp", "neg", "factor"}
 
 
 # sizes against each other
 
 
-def factor(c: Clause, k: int, e: Element) -> int | None:
+def factor(c: Clause, k: int, e: Mark) -> int | None:
     """Note a factor; "twice the living room" compares at once."""
     c.factor = e
     ahead = c.ahead(k + 1, "relative", "det")
     return compare(c, k, e) if ahead is not None and ahead.kind == "np" else k + 1
 
 
-def compare(c: Clause, k: int, e: Element) -> int:
+def compare(c: Clause, k: int, e: Mark) -> int:
     """Read "at least 1.5 times as large as the largest bedroom"."""
-    left = c.rooms_in_front() or (c.objects if c.relative else ()) or c.subject or c.latest
+    left = c.rooms_in_front() or (c.objects if c.relative else ()) or c.subject
     if e.value == "alike":
         rooms = c.latest if len(c.latest) > 1 else ids_of(c.run)
         c.state.say("area_equal", named_rooms(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
@@ -353,14 +316,14 @@ def compare(c: Clause, k: int, e: Element) -> int:
 # where rooms lie: storeys and wings
 
 
-def level(c: Clause, k: int, e: Element) -> None:
+def level(c: Clause, k: int, e: Mark) -> None:
     """Put rooms on a storey: those named before it, or, where it comes first, those that follow."""
     c.state.levels.append(e)
     ahead = c.near(k + 1)
-    part = c.part(k)
+    start = max((j for j, x in enumerate(c.sentence[:k]) if x.kind == "comma"), default=k)
+    part = ids_of(x for x in c.sentence[start:k] if x.kind == "np")
     closes = c.forward and part and (ahead is None or ahead.kind == "comma")  # "upstairs two bedrooms, the kitchen downstairs"
     if not closes and (c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon")):
-        c.state.heights |= {"*": int(e.value)} if "*" in c.latest and not c.forward else {}
         c.forward, c.level, c.run = True, int(e.value), []
         return
     owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"
@@ -369,14 +332,69 @@ def level(c: Clause, k: int, e: Element) -> None:
     c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
 
 
-def wing(c: Clause, _: int, e: Element) -> None:
+def zone(c: Clause, k: int, e: Mark) -> None:
+    """Take the rooms of a zone into the list."""
+    members = tuple(c.stock.zone(e.value))
+    c.state.zones.setdefault(e.value, (members, e))
+    c.push(k, e, members or (f"*zone_{e.value}",))
+
+
+def wing(c: Clause, _: int, e: Mark) -> None:
     """Read "the bedrooms in one wing": they are a zone."""
     c.state.understood(e.first, e.last)
     ids, c.run = ids_of(c.run), []
-    if not ids or all(i.startswith("*") for i in ids):
+    if not named_rooms(ids):
         c.state.wings += tuple(i.removeprefix("*zone_") for i in ids if i != "*")
         return
-    zone_name = next((n for n, (members, _) in c.state.zones.items() if members and set(members) == set(ids)), None)
-    zone_name = zone_name or ("bedroom" if c.types(ids) == {"bedroom"} else f"wing_{len(c.state.wings) + 1}")
-    c.state.zones.setdefault(zone_name, (ids, e))
-    c.state.wings += (zone_name,)
+    known = next((n for n, (members, _) in c.state.zones.items() if set(members) == set(ids)), None)
+    name_of = known or ("bedroom" if c.types(ids) == {"bedroom"} else f"wing_{len(c.state.wings) + 1}")
+    c.state.zones.setdefault(name_of, (ids, e))
+    c.state.wings += (name_of,)
+
+
+PLACES_AND_SIZES = {"level": level, "wing": wing, "zone": zone, "factor": factor, "cmp": compare}  # readers of kinds of marks
+
+
+# amounts
+
+
+def measures_home(c: Clause, k: int, mark: Mark, ids: Group, set_off: bool) -> bool:
+    """Whether an area is the home's: more than the rooms in front would take, right behind them or `set_off` by a comma."""
+    rooms = [x for x in c.sentence if x.kind == "np"]
+    if mark.total:
+        return True
+    if mark.value != "area" or not ids or sum(bool(x.amounts) for x in rooms) != (not set_off):
+        return False
+    times = mark.number / sum(DEFAULTS[c.stock.get(i).type].area for i in ids)
+    home = any(x.kind == "home" and not x.amounts for x in c.sentence[:k])
+    named = [x for x in rooms if x.first < mark.first]
+    if set_off:
+        return times > (LISTED if len(named) > 2 else MORE if home else LARGE if len(named) > 1 else math.inf)
+    closes = len(named) == len(rooms) and (len(rooms) > 2 or home)
+    return times > (LARGE if closes else HUGE if home else math.inf)
+
+
+def attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
+    """Attach an amount that stands by itself, or behind the word for the home."""
+    state = c.state
+    around = c.sentence[max(0, k - 2) : k + 2]
+    before, ahead = c.near(k - 1), c.near(k + 1)
+    rooms = () if home else named_rooms(c.latest)
+    if mark.value == "storeys":
+        state.storeys = state.storeys or ((int(mark.number), mark) if mark.number >= 1 else None)
+    elif mark.value == "rooms":  # of one and a half, the half is to sleep in
+        state.rooms = state.rooms or (2 if mark.number == 1.5 else int(mark.number), mark)
+    elif mark.total or any(x.kind == "flag" and x.value == "total" for x in around):
+        state.amounts.append((mark, None))
+    elif mark.value == "length":
+        named = next((x for x in reversed(c.sentence[:k]) if x.kind == "np" or x.value in NAMED), None)
+        what = next((x.value for x in (named, ahead) if x is not None and x.value in NAMED), "")
+        state.amounts.append((replace(mark, value=what), None) if what else (mark, rooms or None))
+    elif mark.value == "area" and before is not None and (before.kind, before.value) == ("cue", "in") and not home:
+        state.amounts.append((mark, None))  # "ten rooms in 40 m2"
+    elif mark.value == "area" and c.latest == ("*",):
+        state.amounts.append((mark, c.latest))  # "every room at least 9 m2"
+    elif mark.value != "car":
+        before = next((x for x in reversed(c.sentence[:k]) if x.kind != "word"), None)
+        set_off = before is not None and before.kind in {"comma", "and"}
+        state.amounts.append((mark, rooms if rooms and not (set_off and measures_home(c, k, mark, rooms, True)) else None))

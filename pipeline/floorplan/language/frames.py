@@ -280,7 +280,7 @@ def join_brackets(marks: Sequence[Mark], words: Words) -> list[Mark]:
 
 def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, int] | None:
     """Return (relation, end of its first part, place and end of the second) of a bracket that begins at mark k."""
-    for first, second, cue in lex.frames.get(_bare_word(marks[k].text.split(" ", 1)[0], lex), ()):
+    for first, second, cue in lex.frames.get(_bare(marks[k].text, lex)[0], ()):
         start = _matches(marks, k, first, lex)
         named = False
         for j in range(start, min(len(marks), start + FARTHEST)) if start is not None else ():
@@ -303,15 +303,11 @@ def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon)
     return end < len(marks) and "characters" in lex.traits and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
 
 
-def _bare_word(word: str, lex: Lexicon) -> str:
-    return lex.compounds.melted.get(word, word)
-
-
 def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...], lex: Lexicon) -> int | None:
     """Return where the marks go on after the words wanted, where they stand at k; adverbs between them are skipped."""
     need = list(wanted)
     while need and k < len(marks):
-        have = [_bare_word(w, lex) for w in marks[k].text.split()]
+        have = _bare(marks[k].text, lex)
         if have == need[: len(have)]:
             need = need[len(have) :]
         elif have[: len(need)] == need and set(have[len(need) :]) <= lex.sign("article"):  # "in die Küche übergeht"
@@ -320,3 +316,8 @@ def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...], lex: Lexicon) -
             return None
         k += 1
     return None if need else k
+
+
+def _bare(text: str, lex: Lexicon) -> list[str]:
+    """Return the words of a mark, prepositions without the article in them."""
+    return [lex.compounds.melted.get(w, w) for w in text.split() or [""]]

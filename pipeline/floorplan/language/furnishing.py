@@ -234,7 +234,12 @@ class Scan:
         return self.claims
 
     def _put(self, kind: Kind, first: int, last: int, name: str = "", least: int = 0, most: int | None = None, value: float = 0.0) -> int:
-        """Note a claim; return its length in words. "Eight pieces, everything nordic": what a comma parts is said of something else."""
+        """Note a claim with the bounds that follow ("four chairs or more"); return its length in words.
+
+        "Eight pieces, everything nordic": what a comma parts is said of something else.
+        """
+        more, fewer = (self.length(last, side) if kind in {"count", "pieces"} else 0 for side in ("more", "fewer"))
+        last, least, most = last + (more or fewer), 0 if fewer and not more else least, None if more else most
         begin = self.stops[bisect.bisect_left(self.stops, first) - 1] + 1
         left = next((j for j in range(first - 1, max(begin, first - NEAR) - 1, -1) if self.text(j) in COMMAS), max(begin, first - NEAR) - 1)
         right = next((j for j in range(last, last + NEAR - 1) if self.text(j) in COMMAS), last + NEAR - 1)
@@ -279,8 +284,8 @@ class Scan:
             return self._put("openable", k, named + opens + self.length(named + opens, "things", "pieces"), least=least)
         pieces = self.length(at + looks, "pieces") if counted else 0
         if pieces and self.text(at + looks) != "a" and self.words[at + looks].start not in self.counted:
-            self._style_at(at, looks)
-            return self._after("pieces", k, at + looks + pieces, "", least, most)
+            self._style(at, looks)
+            return self._put("pieces", k, at + looks + pieces, "", least, most)
         name_at, length, name = self._name(at)
         if not length:
             return 0
@@ -293,8 +298,8 @@ class Scan:
             )  # "drawers", "lavavajillas"
             least = 2 if last.endswith("s") and last[0].isascii() and not shown else 1
         self.negated = most == 0
-        self._style_at(at, name_at - at)
-        size = self._after("count", k, name_at + length, name, least, most)
+        self._style(at, name_at - at)
+        size = self._put("count", k, name_at + length, name, least, most)
         claim, place = self.claims[-1], len(self.claims) - 1
         seats = self._seats(k + size) if name in TABLES and most != 0 else 0
         self.claims[place] = replace(claim, plural=read is None and least > 1, inward=claim.inward and not seats)
@@ -310,23 +315,15 @@ class Scan:
             return 0
         return self._put("count", k, k + lead + length + people, CHAIRS, int(value))
 
-    def _after(self, kind: Kind, first: int, last: int, name: str, least: int, most: int | None) -> int:
-        """Add bounds that follow: "four chairs or more"."""
-        more, fewer = self.length(last, "more"), self.length(last, "fewer")
-        return self._put(kind, first, last + (more or fewer), name, 0 if fewer and not more else least, None if more else most)
-
     def _name(self, k: int) -> tuple[int, int, str]:
-        """Return (place, length, name) of a thing at word k or after a style."""
+        """Return (place, length, name) of a thing at word k or after a style; none where it names a room: "tv room", "bed 2 11 sqm"."""
         for at in (k, k + self.length(k, "look")):
             length, name = self.phrase(at, "name")
-            if length and not self._part_of_a_room(at, length) and self.length(at, "small") <= length:
+            behind = self.text(at + length)
+            room = behind in lexicon()["words"]["rooms"] or (behind.isdigit() and self.length(at, "numbered"))
+            if length and not room and self.length(at - 2, "walk_in") < 2 and self.length(at, "small") <= length:
                 return at, length, name
         return k, 0, ""
-
-    def _part_of_a_room(self, k: int, length: int) -> bool:
-        """Whether a thing's name is part of a room's: "tv room", "walk-in wardrobe", "bed 2 11 sqm"."""
-        numbered = bool(self.length(k, "numbered")) and self.text(k + length).isdigit()
-        return numbered or self.text(k + length) in lexicon()["words"]["rooms"] or self.length(k - 2, "walk_in") > 1
 
     def _look(self, k: int) -> int:
         """Read a style: "in nordic style", "estilo nórdico", "北欧风格"."""
@@ -339,10 +336,10 @@ class Scan:
                 return self._put("style", k, at + before + length + after, name)
         return 0
 
-    def _style_at(self, k: int, length: int) -> None:
-        phrase_length, name = self.phrase(k, "look")
-        if length and phrase_length == length:
-            self.claims.append(Claim("style", self.words[k].start, self.words[k + length - 1].end, name))
+    def _style(self, k: int, length: int) -> None:
+        """Note the style that stands between an amount and a thing."""
+        if length:
+            self._put("style", k, k + length, self.phrase(k, "look")[1])
 
 
 def read_furniture(prompt: str) -> tuple[str, list[Claim]]:

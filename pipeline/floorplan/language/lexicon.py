@@ -91,7 +91,6 @@ class _Entries(BaseModel):
     verbs_of: Verbs = Verbs()
     spellings: dict[str, str] = {}  # other spellings of words
     behind: dict[str, dict[str, str]] = {}  # behind a word, how others are read that alone mean something else
-    homophones: dict[str, str] = {}  # characters that are written for one another
     endings: str = ""
     abbreviations: str = ""
     range: dict[str, str] = {}
@@ -140,11 +139,10 @@ class Lexicon:
         self.range_from, self.range_to = (_fold_words(entries.range.get(side, "")) for side in ("from", "to"))
         self.bounds = {" ".join(words(p)): key for key, entry in phrases["bounds"].items() for p in split(entry)}
         self.joins = frozenset((",", *(w for entry in phrases["joiners"].values() for w in _fold_words(entry))))
-        heads = {p.split()[0] for entry in phrases.get("conjugated", {}).values() for p in split(entry)}
-        infinitives = sorted(filter(verbs.infinitive, heads))
-        self.tenses = verbs.canonical(infinitives) | entries.spellings  # forms of verbs -> the form that the phrases are made of
-        self.vocabulary = {*self.tenses, *(fold(w) for verb in infinitives for w in verbs.further(verb))}
-        self.classes = {sign: self._closed_class(entry, verbs.contracted) for sign, entry in entries.signs.items()}
+        self.tenses = verbs.canonical() | entries.spellings  # forms of verbs -> the form that the phrases are made of
+        self.vocabulary = {*self.tenses, *map(fold, verbs.further())}
+        spelt = {sign: [s for p in split(entry) for s in _spellings(p, verbs.contracted)] for sign, entry in entries.signs.items()}
+        self.classes = {sign: frozenset(" ".join(self._tense(s)) for s in some) for sign, some in spelt.items()}
         listed = {text for texts in self.classes.values() for text in texts}
         self.signs = {text: frozenset(sign for sign, texts in self.classes.items() if text in texts) for text in listed}
         self.trie: dict[str, Any] = {}
@@ -154,12 +152,6 @@ class Lexicon:
     def sign(self, name: str) -> frozenset[str]:
         """Return the words of a closed class."""
         return self.classes.get(name, frozenset())
-
-    def count(self, text: str) -> int:
-        """Return how many "the other two" are; 0 where no number is said."""
-        meanings = (self.trie.get(w, {}).get("") for w in text.split())
-        said = next((int(m.number) for m in meanings if m is not None and m.kind == "num"), 0)
-        return said or (2 if self.sign("pair") & set(text.split()) else 0)
 
     def find(self, texts: list[str], start: int) -> tuple[int, Meaning, bool] | None:
         """Return (end, meaning, whether "only" was skipped) of the longest phrase at a word, adverbs inside it skipped."""
@@ -183,9 +175,6 @@ class Lexicon:
     def _tense(self, phrase: tuple[str, ...]) -> tuple[str, ...]:
         """Return a phrase with its verbs in the one form that they are read in."""
         return tuple(self.tenses.get(w, w) for w in phrase)
-
-    def _closed_class(self, entry: str, contracted: Mapping[str, str]) -> frozenset[str]:
-        return frozenset(" ".join(self._tense(spelt)) for p in split(entry) for spelt in _spellings(p, contracted))
 
     def _insert(self, key: tuple[str, ...], meaning: Meaning) -> None:
         node = self.trie
@@ -218,8 +207,6 @@ class Lexicon:
                     targets.update(w for w in spelt if w.isalpha() and len(w) >= 4)
                 for w in spelt:
                     others[w] = min(FARTHER[meaning.kind in FUNCTION], others.get(w, 1.0))
-        for wrong, meaning in _misheard(entries):
-            self._insert(words(wrong), meaning)
         self.vocabulary.update(w for p in split(entries.common) for w in words(p))
         blocked = {w for entry in entries.phrases.get("fillers", {}).values() for p in split(entry) if " " not in p for w in words(p)}
         named = {w for entry in entries.phrases["rooms"].values() for p in split(entry.replace("|", ",")) for w in words(p)}
@@ -241,14 +228,10 @@ def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:
                 value, factor = value.split()
                 number = float(factor)
             for p in split(phrases):
-                if section == "conjugated":
-                    yield from ((form, Meaning(kind, value)) for form in e.verbs_of.conjugate(p) if kind != "known")
-                elif kind in STRONG:
+                if kind in STRONG:
                     yield from ((form, Meaning(kind, value, plural=many and kind != "home")) for form, many in forms(e.plurals, p))
                 else:
                     yield p, Meaning(kind, value, number)
-        if section == "numerals" and e.compounds.tens:
-            yield from ((w, Meaning("num", str(n), float(n))) for w, n in e.compounds.numbers(entry))
 
 
 def _spellings(phrase: str, contracted: Mapping[str, str]) -> Iterable[tuple[str, ...]]:
@@ -261,17 +244,6 @@ def _spellings(phrase: str, contracted: Mapping[str, str]) -> Iterable[tuple[str
     if len(usual) > 1 and usual[-1] in contracted:  # "la mitad de" and "la mitad del"
         spellings |= dict.fromkeys((*p[:-1], contracted[p[-1]]) for p in (usual, plain))
     return spellings
-
-
-def _misheard(e: _Entries) -> Iterator[tuple[str, Meaning]]:
-    """Return the names of rooms as they are written when one character is taken for another of the same sound."""
-    for phrase, meaning in _meanings(e) if e.homophones else ():
-        for k, char in enumerate(phrase if meaning.kind == "room" and 1 < len(phrase) < 4 else ""):
-            yield from ((phrase[:k] + wrong + phrase[k + 1 :], meaning) for wrong in e.homophones.get(char, ""))
-            if k and len(phrase) == 3:  # two exchanged: "卫间生"
-                yield phrase[: k - 1] + char + phrase[k - 1] + phrase[k + 1 :], meaning
-            if k + 1 < len(phrase):  # one twice: "客客厅"
-                yield phrase[:k] + char + phrase[k:], meaning
 
 
 def _things(language: Language, rule: Plurals) -> set[str]:

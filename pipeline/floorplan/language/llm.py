@@ -116,7 +116,9 @@ def _ask_server(prompt: str, server: Server) -> tuple[str, FloorProgram]:
         try:
             return reply, validate_reply(reply, prompt)
         except INVALID as error:
-            fault = _explain(error)
+            fault = str(error)[:300] or type(error).__name__
+            if isinstance(error, ValidationError):
+                fault = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors()[:5])
         messages += [
             {"role": "assistant", "content": reply[:4000]},
             {"role": "user", "content": f"That is not valid: {fault}. Answer with the corrected JSON object only."},
@@ -188,22 +190,12 @@ def validate_reply(reply: str, prompt: str) -> FloorProgram:
     return attach_evidence(program, prompt, quotes)
 
 
-def _explain(error: Exception) -> str:
-    if isinstance(error, ValidationError):
-        return "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors()[:5])
-    return str(error)[:300] or type(error).__name__
-
-
-def _variants() -> list[dict[str, Any]]:
-    """Return what a request says beside model and messages, for servers that know a JSON Schema, that know JSON, or neither or other names."""
-    usual: dict[str, Any] = {"max_tokens": MOST_TOKENS, "temperature": 0, "seed": 0}
-    strict = {"type": "json_schema", "json_schema": {"name": "FloorProgram", "schema": schema()}}
-    return [usual | {"response_format": strict}, usual | {"response_format": {"type": "json_object"}}, {}]
-
-
 def _answer(messages: list[dict[str, str]], server: Server, deadline: float) -> str:
     """Return the text of one reply: patient with a busy server, and with one that knows fewer or other parameters."""
-    variants, pauses = _variants(), list(PAUSES)
+    usual: dict[str, Any] = {"max_tokens": MOST_TOKENS, "temperature": 0, "seed": 0}
+    strict = {"type": "json_schema", "json_schema": {"name": "FloorProgram", "schema": schema()}}
+    variants = [usual | {"response_format": strict}, usual | {"response_format": {"type": "json_object"}}, {}]
+    pauses = list(PAUSES)
     while True:
         body = {"model": server.model, "messages": messages, **variants[0]}
         try:

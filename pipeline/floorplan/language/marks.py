@@ -1,7 +1,7 @@
 """From characters to marks: the phrases of a prompt with their meaning, numbers and amounts put together."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from pipeline.floorplan.language.lexicon import Language, Lexicon, Meaning, lexicon
 from pipeline.floorplan.language.spelling import repair, uninflected_meaning
@@ -35,11 +35,40 @@ class Mark:
     bound: str = ""
     total: bool = False  # said of everything together
     side: float | None = None  # the shorter side of "4 x 5 m"
+    # what a noun phrase has (kind "np"; `number`: how many, 0 where it is not said)
+    type: str = ""
+    role: str = ""
+    ordinal: int = 0
+    index: int = 0
+    part: int = 0  # "two of the four": 2
+    det: set[str] = field(default_factory=set)
+    adjectives: set[str] = field(default_factory=set)
+    size: float = 1.0
+    amounts: list["Mark"] = field(default_factory=list)
+    suite: bool = False
+    compound: bool = False  # "a two-bedroom flat": the number is the whole count
+    removes: bool = False  # a negation of what was there
+    functions: set[str] = field(default_factory=set)
+    banned: bool = False
+    ids: tuple[str, ...] = ()  # the rooms that it means
+    taken: list["Mark"] = field(default_factory=list)  # what stands in front of its head and behind it
 
     @property
     def is_size(self) -> bool:
         """Whether it is an area that some room has, and no limit."""
         return (self.kind, self.value) == ("amount", "area") and self.bound not in {"least", "most"}
+
+    @property
+    def definite(self) -> bool:
+        """Whether the phrase points at rooms that are known."""
+        return bool(self.det & {"definite", "all", "both", "each", "other"}) and "own" not in self.det
+
+    @property
+    def introduces(self) -> bool:
+        """Whether the phrase makes rooms of its own."""
+        if self.definite or self.part or "own" in self.det or self.banned or self.ordinal:
+            return False
+        return bool(self.number or self.det & {"indefinite", "another"})
 
 
 @dataclass
@@ -149,15 +178,21 @@ def _number(marks: Sequence[Mark], k: int, written_by_tens: bool) -> tuple[int, 
     total = current = 0.0
     end = k
     while end < len(marks):
-        joined = end > k and (current >= 20 or (total >= 100 and not current)) and (marks[end].kind, marks[end].value) == ("join", "and")
+        joined = end > k and (marks[end].kind, marks[end].value) == ("join", "and")
         word = marks[end + joined] if end + joined < len(marks) else None
-        if word is None or word.kind != "num" or word.value == "figure":
+        turned = word is not None and 0 < current < 10 and 20 <= word.number < 100  # "fünfundsiebzig"
+        if (
+            word is None
+            or (joined and not (turned or current >= 20 or (total >= 100 and not current)))
+            or word.kind != "num"
+            or word.value == "figure"
+        ):
             break
         if word.number >= 100:
             total, current = total + max(current, 1.0) * word.number, 0.0
         elif word.number == 10 and written_by_tens and 0 < current < 10:
             current *= 10
-        elif current % 10 == 0 and (not current or word.number < 10):
+        elif (joined and turned) or (current % 10 == 0 and (not current or word.number < 10)):
             current += word.number
         else:
             break
@@ -166,18 +201,16 @@ def _number(marks: Sequence[Mark], k: int, written_by_tens: bool) -> tuple[int, 
 
 
 def _relabel(marks: Sequence[Mark], words: Words) -> list[Mark]:
-    """Settle what depends on words far off: floors counted from the ground floor, studies where there are bedrooms."""
+    """Settle what depends on words far off: floors counted from a ground floor, studies where there are bedrooms."""
     lex, relabelled = words.lexicon, list(marks)
     ground = "floors_from_one" in lex.traits and any(m.kind == "level" and lex.sign("ground") & set(m.text.split()) for m in marks)
     bedrooms = any(m.kind == "room" and m.value.startswith("bedroom") and m.value != "bedroom/guest" for m in marks)
     for k, mark in enumerate(marks):
-        if mark.kind == "level" and ground:  # with a ground floor, the first floor is the one above
+        if mark.kind == "level" and ground:
             shifted = (n for n in (1, 2) if any(mark.text.endswith(t) for t in lex.sign(f"floor_{n}")))
             relabelled[k] = replace(mark, value=str(next(shifted, mark.value)))
         elif mark.kind == "every" and any(m.kind == "room" and m.text == mark.text.rsplit(" ", 1)[-1] for m in marks[:k]):
-            relabelled[k] = replace(
-                mark, kind="room", value="bedroom", plural=True
-            )  # "todas las habitaciones" where so many were counted by that word
+            relabelled[k] = replace(mark, kind="room", value="bedroom", plural=True)  # "todas las habitaciones": so many were counted
         elif mark.kind == "home" and k and bedrooms and mark.text in lex.sign("study"):
             relabelled[k] = replace(mark, kind="room", value="office")
     return relabelled
@@ -256,8 +289,6 @@ class _Amount:
         if _kind_at(marks, i) == "unit":
             unit, i = marks[i], i + 1
         crossed = i < len(marks) and (marks[i].kind == "times" or marks[i].text in {"x", *self.lex.sign("crossing")})
-        if crossed and unit is None and _kind_at(marks, i + 1) == "num" and _kind_at(marks, i + 2) in {"comma", "stop", "line", "join"}:
-            return low * marks[i + 1].number, None, min(low, marks[i + 1].number), Mark("unit", "length", 1.0), i + 2  # "4x5"
         if _kind_at(marks, i + 1) == "num" and _kind_at(marks, i + 2) == "unit" and marks[i].kind != "comma":
             second, after = marks[i + 1].number, marks[i + 2]
             joins = marks[i].kind == "dash" or marks[i].text in self.lex.range_to
@@ -272,8 +303,7 @@ class _Amount:
         marks = self.marks
         if i + 1 < len(marks) and marks[i].value == "total" and self.lex.bounds.get(marks[i + 1].text, "about") != "about":
             self.total, i = True, i + 1  # "50 m2 in total at most"
-        compared = unit.value == "share" and _kind_at(marks, i) in {"cmp", "adj", "size"}  # "30 % larger than"
-        behind = self.lex.bounds.get(marks[i].text, "about") if i < len(marks) and not compared else "about"
+        behind = self.lex.bounds.get(marks[i].text, "about") if i < len(marks) and unit.value != "share" else "about"
         added = i < len(marks) and marks[i].text == "+" and _kind_at(marks, i + 1) in {"room", "suite", "det", "adj", "size", "pron"}
         if behind != "about" and not added and _kind_at(marks, i + 1) != "num":
             self.bound, i = BOUNDS[behind], i + 1

@@ -14,8 +14,8 @@ from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.frames import apply_frames, join_brackets
 from pipeline.floorplan.language.furnishing import STOPS, Claim, Scan, read_furniture
 from pipeline.floorplan.language.lexicon import kinds
-from pipeline.floorplan.language.marks import Mark, Words, amounts, listen, segment
-from pipeline.floorplan.language.phrases import Element, ban, refuse, sentences, settle
+from pipeline.floorplan.language.marks import Mark, amounts, listen, segment
+from pipeline.floorplan.language.phrases import ban, refuse, sentences, settle
 from pipeline.floorplan.language.rooms import Reading, introduce
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
@@ -58,7 +58,10 @@ def understand(prompt: str) -> FloorProgram:
 def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
     words = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    marks = _with_wishes(amounts(segment(words), words), wishes, words)
+    starts = [t.start for t in words.tokens]  # a mark where a wish was taken out: whose it is tells which rooms there are
+    places = [bisect.bisect_left(starts, w.start) for w in wishes]
+    gaps = [Mark("wish", first=k, last=k) for k in places]
+    marks = sorted([*gaps, *amounts(segment(words), words)], key=lambda m: m.first)
     said = [m for m in apply_frames(marks, words) if m.kind != "wish"]
     refuse(said, words)
     people = [m for m in said if m.kind == "people"]
@@ -85,13 +88,6 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
     return program.model_copy(update=_left_out(state, parsed, program.evidence, sorted([*marks, *people[1:]], key=lambda m: m.first)))
 
 
-def _with_wishes(marks: Sequence[Mark], wishes: Sequence[Claim], words: Words) -> list[Mark]:
-    """Return the marks with one in each place from which a wish was taken out: whose it is tells which rooms there are."""
-    starts = [t.start for t in words.tokens]
-    places = [bisect.bisect_left(starts, w.start) for w in wishes]
-    return sorted([*(Mark("wish", first=k, last=k) for k in places), *marks], key=lambda m: m.first)
-
-
 def check_length(prompt: str) -> None:
     """Raise UsageError for a prompt that is empty or too long, in characters or words."""
     if not prompt.strip():
@@ -102,24 +98,24 @@ def check_length(prompt: str) -> None:
         raise UsageError(f"the prompt has {count} words and marks", f"keep it under {MOST_WORDS}")
 
 
-def _left_out(
-    state: Reading, parsed: list[list[Element]], evidence: Sequence[Evidence], marks: Sequence[Mark]
-) -> dict[str, tuple[Span, ...]]:
+def _left_out(state: Reading, parsed: list[list[Mark]], evidence: Sequence[Evidence], marks: Sequence[Mark]) -> dict[str, tuple[Span, ...]]:
     """Return what nothing was made of: `unbuilt`, names of what nobody builds; `unparsed`, words that are in no vocabulary, and words that say something and stand in no evidence."""
     tokens = state.heard.tokens
     places = [{k for k, t in enumerate(tokens) if e.start <= t.start and t.end <= e.end} for e in evidence]
     cited = _consumed_tokens(state, parsed, places, evidence)
     spans: dict[str, list[Span]] = {"unparsed": [], "unbuilt": []}
     for k, mark in enumerate(marks):
-        free = mark.last > mark.first and not cited & set(range(mark.first, mark.last))
+        if mark.last == mark.first:
+            continue
+        free = not cited & set(range(mark.first, mark.last))
         named = free and mark.value in NOT_BUILT
-        if named or (mark.kind == "word" and mark.last > mark.first) or (free and _says(state, marks, k)):
+        if named or mark.kind == "word" or (free and _says(state, marks, k)):
             start, end = tokens[mark.first].start, tokens[mark.last - 1].end
             spans["unbuilt" if named else "unparsed"].append(Span(start=start, end=end, text=state.heard.prompt[start:end]))
     return {field: tuple(some) for field, some in spans.items()}
 
 
-def _consumed_tokens(state: Reading, parsed: list[list[Element]], places: Sequence[set[int]], evidence: Sequence[Evidence]) -> set[int]:
+def _consumed_tokens(state: Reading, parsed: list[list[Mark]], places: Sequence[set[int]], evidence: Sequence[Evidence]) -> set[int]:
     """Return the tokens that something was made of: evidence, what belongs to a phrase in it, and words that only help a statement."""
     cited = state.used.union(*places)
     stated = set().union(*(p for p, e in zip(places, evidence, strict=True) if e.field.split(".")[0] != "rooms" or e.field.count(".") > 1))
@@ -189,7 +185,9 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
     evidence = []
     for claim in claims:
         every = tuple(r.id for r in program.rooms) if claim.home and claim.kind in {"pieces", "openable"} else ()
-        rooms = every or place.likeliest(claim, place.of(claim)) or ("",)
+        rooms = every or place.of(claim) or ("",)
+        usual = next((t for t in natural(claim.name) if t in {place.kinds.get(i) for i in rooms}), "") if claim.kind == "count" else ""
+        rooms = tuple(i for i in rooms if place.kinds.get(i) == usual) or rooms  # a dining table in one of two halls
         one = replace(claim, least=1) if claim.plural and len(rooms) > 1 else claim  # "two bedrooms with wardrobes"
         for room in rooms:
             by_room.setdefault(room, []).append(one)
@@ -270,66 +268,45 @@ class _Place:
 
     def of(self, claim: Claim) -> tuple[str, ...]:  # noqa: PLR0911 - one answer per rule
         """Return the ids of the rooms that a claim means, () for the whole home."""
-        if claim.home:
-            return ()
         place = bisect.bisect_left(self.stops, claim.start)
         begin, end = self.stops[place - 1] + 1, self.stops[place]
         before = [m for m in self.named if begin <= m.start and m.end <= claim.start]
         after = [m for m in self.named if claim.end <= m.start and m.end <= end]
-        gap = after[0].start - claim.end if after else FARTHEST + 1
-        if (claim.inward and gap <= FARTHEST and "," not in self.prompt[claim.end : after[0].start]) or (
-            gap <= CLOSE and self.scan.length(self._at(claim.end), "of")
-        ):  # "带淋浴的卫生间"
-            return after[0].ids
-        if claim.kind == "style":
-            return self._styled(claim, before, after)
-        if before and self._of_the_home(claim, before[-1]):
+        gap = self.prompt[claim.end : after[0].start] if after else " " * FARTHEST
+        inward = claim.inward and len(gap) < FARTHEST and "," not in gap
+        if claim.home or (claim.kind == "style" and not after and not before):
             return ()
-        if before:
-            near = self._joined(before[-1].end, claim.start) or self._natural(claim, before[-1])
-            likely = [] if near else [m for m in [*reversed(before), *after, *self.named] if self._natural(claim, m)]
-            if not near and not likely and any(impossible(self.kinds[i], claim.name) for i in before[-1].ids):
-                return ()  # "a one-bedroom flat, with a tub"
-            return (likely or before[-1:])[0].ids
-        if claim.kind != "count" and gap <= FARTHEST // 2:
+        if inward or (len(gap) <= CLOSE and self.scan.length(self._at(claim.end), "of")):  # "带淋浴的卫生间"
             return after[0].ids
-        likely = [m for m in [*after, *self.named] if self._natural(claim, m)]
-        if claim.kind == "count" and likely and claim.least:
-            return likely[0].ids
-        earlier = [m for m in self.named if m.end <= claim.start]
-        first = self._at(begin)
-        stands_for = any(self.scan.length(k, "stands_for") for k in range(first, first + 3) if k < self._at(claim.start))
-        return earlier[-1].ids if earlier and begin and claim.kind != "walkable" and stands_for else ()
+        if claim.kind == "style":  # a room's where it stands in the room's list of wishes or right before its name
+            if before and self._joined(before[-1].end, claim.start) and self._led(before[-1], claim):
+                return before[-1].ids
+            return after[0].ids if not gap.strip() and after and not self._dwelling(after[0]) else ()
+        likely = [m.ids for m in (*reversed(before), *after, *self.named) if self._natural(claim, m)]
+        if not before and claim.kind == "count":
+            return likely[0] if likely and claim.least else ()
+        if not before:
+            return after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
+        room, usual = before[-1], self._natural(claim, before[-1])
+        if self._dwelling(room) and not (claim.plural and usual):
+            return ()  # "a two-bedroom flat with a sofa"; but "with bunk beds"
+        joined = self._joined(room.end, claim.start)
+        if usual or (joined and self._led(room, claim)):
+            return room.ids
+        mine = not joined and not any(impossible(self.kinds[i], claim.name) for i in room.ids)
+        return likely[0] if likely else room.ids if mine else ()  # "two bedrooms, a kitchen and a sofa": the home's
 
-    def _of_the_home(self, claim: Claim, room: Mention) -> bool:
-        """Whether what follows a room is the home's: "a two-bedroom flat with a sofa", "two bedrooms, a kitchen and a sofa"; but "with bunk beds"."""
-        natural = self._natural(claim, room)
-        if self.scan.length(self._at(room.end), "dwelling"):
-            return claim.kind != "count" or not (claim.plural and natural)
-        if claim.kind != "count" or natural or not self._joined(room.end, claim.start):
-            return False
-        return self._counted_in_a_dwelling(room) or not self._led(room, claim)
-
-    def _counted_in_a_dwelling(self, room: Mention) -> bool:
-        """Whether rooms say how large a home is: "un piso de dos dormitorios"."""
+    def _dwelling(self, room: Mention) -> bool:
+        """Whether a room says how large a home is: "a two-bedroom flat", "un piso de dos dormitorios"."""
         first = self._at(room.start)
-        before = next((k for k in range(first - 1, first - 4, -1) if self.scan.length(k, "dwelling", "with", "and")), first)
-        return bool(self.scan.length(before, "dwelling"))
+        lead = next((k for k in range(first - 1, first - 4, -1) if self.scan.length(k, "dwelling", "with", "and")), first)
+        return bool(self.scan.length(lead, "dwelling") or self.scan.length(self._at(room.end), "dwelling"))
 
     def _led(self, room: Mention, claim: Claim) -> bool:
         """Whether a word or a mark between a room and a wish gives the one to the other: "with", "has", a colon."""
         between = range(self._at(room.end), self._at(claim.start))
-        return any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in between)
-
-    def _styled(self, claim: Claim, before: Sequence[Mention], after: Sequence[Mention]) -> tuple[str, ...]:
-        """Return whose style it is: a room's where it stands in the room's list of wishes or right before its name, else the home's."""
-        if before and self._joined(before[-1].end, claim.start):
-            own = any(c is not claim and before[-1].end <= c.start < claim.start for c in self.claims)
-            if own or self._led(before[-1], claim) or "characters" in self.scan.traits:
-                return before[-1].ids
-        if after and not self.prompt[claim.end : after[0].start].strip() and not self.scan.length(self._at(after[0].end), "dwelling"):
-            return after[0].ids
-        return ()
+        marked = any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in between)
+        return marked or "characters" in self.scan.traits
 
     def _joined(self, start: int, end: int) -> bool:
         """Whether between two places stands nothing but other wishes and what joins them."""
@@ -345,9 +322,3 @@ class _Place:
 
     def _natural(self, claim: Claim, mention: Mention) -> bool:
         return claim.kind != "count" or any(self.kinds.get(i) in natural(claim.name) for i in mention.ids)
-
-    def likeliest(self, claim: Claim, rooms: tuple[str, ...]) -> tuple[str, ...]:
-        """Return those rooms, of several types that one word names, in which a thing stands most often: a dining table in one of two halls."""
-        kinds = {self.kinds[i] for i in rooms}
-        likely = next((kind for kind in natural(claim.name) if kind in kinds), "") if claim.kind == "count" else ""
-        return tuple(i for i in rooms if self.kinds[i] == likely) or rooms

@@ -1,7 +1,7 @@
 """From marks to the elements of sentences: noun phrases with all that stands in front of and behind a room's name, what lies between them, and what is ruled out."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import replace
 from typing import Any
 
 from pipeline.floorplan.language.lexicon import Lexicon, kinds
@@ -10,55 +10,20 @@ from pipeline.floorplan.program.consistency import ImpossibleError
 
 DROPPED = kinds("dropped")
 BEHIND = {"own", "another"}  # determiners that may stand behind their noun
-ROLES = {"primary", "guest", "child", "shared"}  # said by an adjective
+ROLES = {"primary", "guest", "child", "shared", "elder", "staff", "carer", "ensuite"}  # whose a room is
 ENDS = {"comma", "join", "clf", "stop", "open", "close", "slash"}
 MOST_INDEX = 12
 LONGEST = 150  # marks of a sentence; a longer one is read in parts, cut at commas
-MARKS = tuple(f.name for f in fields(Mark))
 SHORT = 48  # characters: a prompt of such lines is a list
 
 
-@dataclass(slots=True)
-class Element(Mark):
-    """A mark with all that belongs to it: a noun phrase (kind "np"; `number`: how many, 0 where it is not said) or another thing said."""
-
-    type: str = ""
-    role: str = ""
-    ordinal: int = 0
-    index: int = 0
-    part: int = 0  # "two of the four": 2
-    det: set[str] = field(default_factory=set)
-    adjectives: set[str] = field(default_factory=set)
-    size: float = 1.0
-    amounts: list[Mark] = field(default_factory=list)
-    suite: bool = False
-    compound: bool = False  # "a two-bedroom flat": the number is the whole count
-    removes: bool = False  # a negation of what was there
-    functions: set[str] = field(default_factory=set)
-    banned: bool = False
-    ids: list[str] = field(default_factory=list)
-    taken: list[Mark] = field(default_factory=list)  # what stands in front of its head and behind it
-
-    @property
-    def definite(self) -> bool:
-        """Whether the phrase points at rooms that are known."""
-        return bool(self.det & {"definite", "all", "both", "each", "other"}) and "own" not in self.det
-
-    @property
-    def introduces(self) -> bool:
-        """Whether the phrase makes rooms of its own."""
-        if self.definite or self.part or "own" in self.det or self.banned or self.ordinal:
-            return False
-        return bool(self.number or self.det & {"indefinite", "another"})
-
-
-def heads(sentence: list[Element], k: int) -> bool:
+def heads(sentence: list[Mark], k: int) -> bool:
     """Whether the level at k opens a new part of a sentence: "living room, kitchen, and upstairs two bedrooms"."""
     after = next((x for x in sentence[k + 1 :] if x.kind not in {"det", "flag", "comma"}), None)
     return k > 0 and sentence[k - 1].kind in {"comma", "and"} and after is not None and after.kind in {"np", "colon"}
 
 
-def backward(sentence: list[Element], k: int, level: int | None) -> int | None:
+def backward(sentence: list[Mark], k: int, level: int | None) -> int | None:
     """Return the storey of a phrase: of the level named before it, or behind it where sentences name levels behind."""
     parted = False
     for j, e in enumerate(sentence[k + 1 :] if level is None else (), k + 1):
@@ -70,19 +35,13 @@ def backward(sentence: list[Element], k: int, level: int | None) -> int | None:
     return level
 
 
-def sentences(marks: Sequence[Mark], words: Words) -> list[list[Element]]:
+def sentences(marks: Sequence[Mark], words: Words) -> list[list[Mark]]:
     """Return the elements of each sentence."""
     by_sentence: list[list[Mark]] = [[]]
     for k, mark in enumerate(marks):
         here = by_sentence[-1]
         line = _line(marks, k, words) if mark.kind == "line" else ""
-        listed = (
-            (here[-1].kind, here[-1].value) == ("num", "figure") and (k < 2 or marks[k - 2].kind in {"line", "comma"}) if here else False
-        )
-        if mark.kind == "stop" and listed:
-            here.pop().kind = "fill"  # "1. kitchen"
-            here += [replace(mark, kind="comma", text=",")] if here else []
-        elif line == "comma":
+        if line == "comma":
             here.append(replace(mark, kind="comma", text=","))
         elif line == "stop" or mark.kind == "stop" or (mark.kind == "comma" and len(here) > LONGEST):
             by_sentence.append([])
@@ -104,12 +63,12 @@ def _line(marks: Sequence[Mark], k: int, words: Words) -> str:
     return "comma" if listed or initial.isupper() or initial > "\u2e80" else ""
 
 
-def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
+def _elements(marks: list[Mark], lex: Lexicon) -> list[Mark]:
     """Return the elements of one sentence."""
-    elements: list[Element] = []
+    elements: list[Mark] = []
     pre: list[Mark] = []
     k = 0
-    postposed = _has_postposed_counts(marks)
+    postposed = [m.kind for m in marks if m.kind in {"room", "num", "clf"}][:3] == ["room", "num", "clf"]  # "卧室两间、卫生间一间"
     while k < len(marks):
         mark = marks[k]
         if mark.kind in HEADS:
@@ -124,7 +83,7 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
             elements += [*_loose([p for p in pre if p.kind != "amount"], None, lex), _plain(mark, lex)]
             elements[-1].amounts += [p for p in pre if p.kind == "amount"]
             pre = []
-        elif behind and mark.value in {"area", "length"} and not _ahead(marks, k, lex):
+        elif behind and mark.value in {"area", "length"} and not (_heads_phrase(marks, k + 1) and marks[k + 1].kind == "size"):
             elements[-1].amounts.append(mark)
             areas = sum(m.is_size for m in elements[-1].amounts)
             if areas > 1 and elements[-1].number in {0.0, areas - 1}:  # "bedrooms of 14 and 12 m2" are two
@@ -142,22 +101,12 @@ def _elements(marks: list[Mark], lex: Lexicon) -> list[Element]:
     return elements + _loose(pre, None, lex)
 
 
-def _ahead(marks: Sequence[Mark], k: int, lex: Lexicon) -> bool:
-    """Whether the amount at k is said of the room that follows: "mit 25 m² großem Wohnzimmer"."""
-    return _heads_phrase(marks, k + 1) and (marks[k + 1].kind == "size" or marks[k].text.split()[0] in lex.sign("with"))
-
-
 def _heads_phrase(marks: Sequence[Mark], k: int) -> bool:
     """Whether a room's name follows, with nothing between but what stands in front of one."""
     return next((m.kind in HEADS for m in marks[k:] if m.kind not in {"num", "ord", "adj", "size"}), False)
 
 
-def _has_postposed_counts(marks: Sequence[Mark]) -> bool:
-    """Whether numbers stand behind what they count, as in "卧室两间、卫生间一间"."""
-    return [m.kind for m in marks if m.kind in {"room", "num", "clf"}][:3] == ["room", "num", "clf"]
-
-
-def _loose(pre: Sequence[Mark], ahead: Mark | None, lex: Lexicon, placed: bool = False) -> list[Element]:
+def _loose(pre: Sequence[Mark], ahead: Mark | None, lex: Lexicon, placed: bool = False) -> list[Mark]:
     """Return what stood in front of no room: "two baths, one en suite", "ein Bad, das vom Flur erreichbar ist"."""
     owned = ahead is not None and ahead.kind == "owner"  # "four bedrooms, two for the kids"
     kept = {"amount", "adj"} if owned else {"amount", "adj", "det"}
@@ -171,26 +120,21 @@ def _loose(pre: Sequence[Mark], ahead: Mark | None, lex: Lexicon, placed: bool =
     return elements
 
 
-def _plain(mark: Mark, lex: Lexicon) -> Element:
+def _plain(mark: Mark, lex: Lexicon) -> Mark:
     kind = "and" if mark.kind == "slash" else mark.kind
     if mark.kind == "join":
         kind = "comma" if mark.text in lex.sign("also") else mark.value
     removes = mark.kind == "neg" and mark.text in lex.sign("removes")
-    return _element(mark, kind=kind, removes=removes)
+    return replace(mark, kind=kind, removes=removes)
 
 
-def _element(mark: Mark, **more: Any) -> Element:
-    """Return a mark as an element."""
-    return Element(**{**{name: getattr(mark, name) for name in MARKS}, **more})
-
-
-def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Element], lex: Lexicon, postposed: bool) -> int:
+def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Mark], lex: Lexicon, postposed: bool) -> int:
     """Append the phrase whose head is at k, one for each room of a double name: "lounge diner"; return where reading goes on."""
     mark, front = marks[k], pre
     compound = k + 1 < len(marks) and marks[k + 1].kind == "home"
     names = mark.value.split("+") if mark.kind == "room" else [mark.value]
     for part in names[:-1]:
-        elements += [_phrase(replace(mark, value=part), front, compound, lex), Element("and", first=mark.first, last=mark.first)]
+        elements += [_phrase(replace(mark, value=part), front, compound, lex), Mark("and", first=mark.first, last=mark.first)]
         elements[-2].adjectives.update({"melted"} if part != "bedroom" else ())
         front = [p for p in front if p.kind != "num"]
     phrase = _phrase(replace(mark, value=names[-1]), front, compound, lex)
@@ -202,13 +146,12 @@ def _phrases(marks: list[Mark], k: int, pre: list[Mark], elements: list[Element]
     return k
 
 
-def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> Element:
+def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> Mark:
     """Put a noun phrase together from its head and what stands in front of it."""
     kind, _, role = mark.value.partition("/") if mark.kind == "room" else ("bedroom", "", mark.value)
-    phrase = _element(mark, kind="np", type=kind, number=0.0, compound=compound, taken=list(pre))
-    phrase.suite = mark.kind == "suite"
-    phrase.functions = {"dining"} if role == "diner" else set()
-    phrase.role = "" if role in {"diner", "corner"} else role
+    own: dict[str, Any] = {"det": set(), "adjectives": set(), "amounts": [], "taken": list(pre)}
+    own |= {"suite": mark.kind == "suite", "functions": {"dining"} if role == "diner" else set()}
+    phrase = replace(mark, kind="np", type=kind, role=role if role in ROLES else "", number=0.0, compound=compound, **own)
     for part in pre:
         if part.kind == "num":
             phrase.banned = phrase.banned or part.number == 0
@@ -218,7 +161,7 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> El
         elif part.kind == "det":
             phrase.det.add("definite" if part.value == "partitive" else part.value)
             if part.value == "other" and not phrase.number:
-                phrase.number = count if (count := lex.count(part.text)) > 1 else 0.0
+                phrase.number = 2.0 if lex.sign("pair") & set(part.text.split()) else 0.0
         elif part.kind == "ord":
             phrase.ordinal = int(part.number)
         elif part.kind == "adj":
@@ -233,7 +176,7 @@ def _phrase(mark: Mark, pre: Sequence[Mark], compound: bool, lex: Lexicon) -> El
     return phrase
 
 
-def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool, lex: Lexicon) -> int:
+def _behind(marks: Sequence[Mark], k: int, phrase: Mark, postposed: bool, lex: Lexicon) -> int:
     """Read what belongs to a noun phrase behind its head: adjectives, an index, a number, areas; return where reading goes on."""
     adjectives = "adjectives_behind" in lex.traits
     while k < len(marks):
@@ -241,12 +184,8 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool, lex
         if (mark.kind == "adj" and adjectives) or (
             mark.kind == "det" and mark.value in BEHIND and (adjectives or not _heads_phrase(marks, k + 1))
         ):
-            if mark.kind == "det":
-                phrase.det.add(mark.value)
-            elif mark.value in {*ROLES, "ensuite"}:
-                phrase.role = phrase.role or mark.value
-            else:
-                phrase.adjectives.add(mark.value)
+            (phrase.det if mark.kind == "det" else phrase.adjectives).add(mark.value)
+            phrase.role = phrase.role or (mark.value if mark.value in ROLES else "")
             phrase.last = mark.last
         elif mark.kind == "size" and adjectives:
             phrase.size = mark.number
@@ -268,7 +207,7 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool, lex
     return k
 
 
-def _counts(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> bool:
+def _counts(marks: Sequence[Mark], k: int, phrase: Mark, postposed: bool) -> bool:
     """Whether the number at k belongs to the phrase in front of it rather than to what follows."""
     number = marks[k].number
     if (phrase.number and not postposed) or number != int(number) or not 0 < number <= MOST_INDEX:
@@ -279,7 +218,7 @@ def _counts(marks: Sequence[Mark], k: int, phrase: Element, postposed: bool) -> 
     return marks[k].value == "figure" and (after in ENDS or after in {"colon", "amount", "verb", "cue", "level", "line"})
 
 
-def settle(parsed: list[list[Element]]) -> None:
+def settle(parsed: list[list[Mark]]) -> None:
     """Let the kitchenette of a studio be a function of its one room, not a kitchen of its own."""
     everything = [e for s in parsed for e in s]
     one = any((e.kind == "home" and e.value) or e.type == "studio_room" or (e.value == "rooms" and e.number == 1) for e in everything)
@@ -314,27 +253,18 @@ def refuse(marks: Sequence[Mark], words: Words) -> None:
             raise ImpossibleError(what.format(said), advice, [evidence])
 
 
-def ban(sentence: list[Element]) -> None:
+def ban(sentence: list[Mark]) -> None:
     """Mark the noun phrases that are ruled out."""
     for k, e in enumerate(sentence):
-        if e.kind == "neg":
-            j = _target(sentence, k + 1)
-            if j is not None:
-                _negate(sentence, k, j)
-                continue
+        j = _target(sentence, k + 1) if e.kind == "neg" else None
+        behind = next((x for x in sentence[j + 1 :] if x.kind != "verb"), None) if j is not None else None
+        relation = behind is not None and behind.kind == "cue" and behind.value in RELATIONS  # which is what is negated
+        if j is not None and not relation and (not sentence[j].definite or e.removes):
+            e.kind = "used"
+            _list(sentence, j)
 
 
-def _negate(sentence: list[Element], k: int, j: int) -> None:
-    """Apply the negation at k to the phrase at j."""
-    e, phrase, behind = sentence[k], sentence[j], next((x for x in sentence[j + 1 :] if x.kind != "verb"), None)
-    if behind is not None and behind.kind == "cue" and behind.value in RELATIONS:  # the relation is what is negated
-        return
-    if not phrase.definite or e.removes:
-        e.kind = "used"
-        _list(sentence, j)
-
-
-def _target(sentence: list[Element], k: int) -> int | None:
+def _target(sentence: list[Mark], k: int) -> int | None:
     """Return the noun phrase that a negation in front of k rules out; None where it turns a relation or says nothing of rooms."""
     for j, e in enumerate(sentence[k:], k):
         if e.kind == "np":
@@ -345,7 +275,7 @@ def _target(sentence: list[Element], k: int) -> int | None:
     return None
 
 
-def _list(sentence: list[Element], j: int) -> None:
+def _list(sentence: list[Mark], j: int) -> None:
     """Mark a list under one negation: "no balcony, garage or cellar"."""
     sentence[j].banned = True
     joined = ""

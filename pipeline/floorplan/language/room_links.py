@@ -75,9 +75,7 @@ class Draft:
 
 
 def pairs(a: Group, b: Group) -> list[tuple[str, str]]:
-    """Return who is meant with whom: neighbours of one list, all with a single one, else one by one."""
-    if not a or not b:
-        return list(itertools.pairwise(a or b))
+    """Return who is meant with whom: all with a single one, else one by one."""
     if len(a) == 1 or len(b) == 1:
         return list(itertools.product(a, b))
     return list(zip(a, b, strict=True)) if len(a) == len(b) else [(x, b[0]) for x in a]
@@ -88,8 +86,10 @@ def join(draft: Draft, state: Reading) -> None:
     stock, facts = state.inventory, state.facts
     ways = [way for way, only in itertools.pairwise(facts) if only.what == "only" and way.what in {"door", "leads"} and way.a == only.a]
     for fact in facts:
-        if fact.what == "own":
-            _belongings(draft, stock, fact, ways)
+        owners = fact.b if len(fact.b) == len(fact.a) else fact.b[:1] * len(fact.a)
+        for thing, owner in zip(fact.a, owners, strict=False) if fact.what == "own" else ():
+            if not any(thing in way.a and owner not in way.b for way in ways):  # reached only through another room of its owner's
+                _give(draft, stock, thing, owner, fact)
     _merge_rooms(draft, stock, facts)
     for fact in facts:
         if any(i[0] == "*" for i in fact.a + fact.b):
@@ -105,14 +105,6 @@ def join(draft: Draft, state: Reading) -> None:
     _zones(draft, state)
     for fact in facts:
         _apart(draft, state, fact)
-
-
-def _belongings(draft: Draft, stock: Inventory, fact: Fact, ways: Sequence[Fact]) -> None:
-    """Join each room to the one it belongs to, unless it is reached only through another one of its owner's."""
-    owners = fact.b if len(fact.b) == len(fact.a) else fact.b[:1] * len(fact.a)
-    for thing, owner in zip(fact.a, owners, strict=False):
-        if not any(thing in way.a and owner not in way.b for way in ways):
-            _give(draft, stock, thing, owner, fact)
 
 
 def _give(draft: Draft, stock: Inventory, thing: str, owner: str, fact: Fact) -> None:
@@ -171,25 +163,14 @@ def _relate_rooms(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fa
             draft.forbid("connected" if what == "not_connected" else "open", room, other, None, fact)
     elif what == "largest" and a:
         draft.relate("largest", a, stock.get(a).type, 1.0, fact)
-    else:
-        for larger, smaller in _sizes(stock, fact):
-            draft.relate("area_equal" if what == "area_equal" else "area_order", larger, smaller, fact.value or 1.0, fact)
-
-
-def _sizes(stock: Inventory, fact: Fact) -> list[tuple[str, str]]:
-    """Return which room is larger than which, or as large, by a fact."""
-    if fact.what == "area_equal":
-        return list(itertools.combinations(fact.a, 2))
-    if fact.what == "area_order":
-        return list(itertools.product(fact.a, fact.b))
-    if fact.what == "smallest":
-        return [(b, fact.a[0]) for b in fact.b if b != fact.a[0]]
-    if fact.what not in {"largest_of_all", "smallest_of_all"}:
-        return []
-    mine, smallest = stock.get(fact.a[0]), fact.what == "smallest_of_all"
-    others = [r for r in stock.rooms if r.id != mine.id and r.stated and (r.type not in ASIDE or smallest)]
-    pairs = [(mine.id, r.id) for r in others if mine.type != "bedroom" or r.type == "bedroom"]
-    return [(b, a) for a, b in pairs] if smallest else pairs
+    elif what == "largest_of_all":
+        mine = stock.get(a)
+        smaller = stock.of("bedroom") if mine.type == "bedroom" else [r for r in stock.rooms if r.stated and r.type not in ASIDE]
+        for one in (r.id for r in smaller if r is not mine):
+            draft.relate("area_order", a, one, 1.0, fact)
+    elif what in {"area_equal", "area_order"}:
+        for one, other in itertools.combinations(fact.a, 2) if what == "area_equal" else itertools.product(fact.a, fact.b):
+            draft.relate(what, one, other, fact.value, fact)
 
 
 def _only(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> None:
@@ -205,12 +186,12 @@ def _only(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact]) -> 
 
 
 def _window(draft: Draft, stock: Inventory, fact: Fact) -> None:
-    wish = "required" if fact.what == "window" else "forbidden"
-    for a in fact.a:
-        draft.cite(fact.first, fact.last, f"rooms.{a}.window")
-        if stock.get(a).window not in {"auto", wish}:
-            raise ImpossibleError(f"{a} is to have a window and to have none", "keep one of the two", draft.citations(f"rooms.{a}.window"))
-        stock.get(a).window = wish
+    for room, wish in ((i, "required" if fact.what == "window" else "forbidden") for i in fact.a):
+        draft.cite(fact.first, fact.last, f"rooms.{room}.window")
+        if stock.get(room).window not in {"auto", wish}:
+            words = draft.citations(f"rooms.{room}.window")
+            raise ImpossibleError(f"{room} is to have a window and to have none", "keep one of the two", words)
+        stock.get(room).window = wish
 
 
 def _check_order(draft: Draft) -> None:
@@ -246,13 +227,11 @@ def _suites(draft: Draft, stock: Inventory, facts: Sequence[Fact]) -> None:
         near = draft.neighbours(bed.id)
         reach = near | {j for i in near if stock.get(i).type == "closet" for j in draft.neighbours(i)}
         if not any(stock.get(i).type == "bathroom" for i in reach):
+            levels = {r.level for r in stock.rooms} if bed.level is None else {None, bed.level}
             known = [
-                r
-                for r in stock.of("bathroom")
-                if r.role in ENSUITE or (r.open_slot and (bed.level is None or r.level in {None, bed.level}))
+                r for r in stock.of("bathroom") if (r.role in ENSUITE or (r.open_slot and r.level in levels)) and not draft.neighbours(r.id)
             ]
-            free = [r for r in known if not draft.neighbours(r.id)]
-            bath = min(free, key=lambda r: not r.role) if free else stock.add("bathroom", "", "en suite", bed.level)
+            bath = min(known, key=lambda r: not r.role) if known else stock.add("bathroom", "", "en suite", bed.level)
             bath.open_slot = False
             _give(draft, stock, bath.id, bed.id, fact)
             draft.cite(fact.first, fact.last, f"rooms.{bath.id}")
@@ -266,8 +245,7 @@ def _suites(draft: Draft, stock: Inventory, facts: Sequence[Fact]) -> None:
 def _zones(draft: Draft, state: Reading) -> None:
     """Write the zones, and that wings lie apart."""
     for name, (members, e) in state.zones.items():
-        ids = list(members) or state.inventory.zone(name)
-        if ids:
+        if ids := list(members) or state.inventory.zone(name):
             draft.zones.append({"name": name, "members": ids})
             draft.cite(e.first, e.last, f"zones.{name}")
     zones = {z["name"] for z in draft.zones}

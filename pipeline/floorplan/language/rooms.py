@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.marks import Mark, Words
-from pipeline.floorplan.language.phrases import Element, backward, heads
+from pipeline.floorplan.language.phrases import ROLES, backward, heads
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
@@ -20,7 +20,6 @@ GROUPS = {"door", "leads", "open", "near", "wall", "ban", "avoid", "away", "no_t
 ALONE = {"living_room", "kitchen", "dining_room", "hallway", "entry", "utility", "garage", "staircase", "family_room", "studio_room"}
 PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means one
 THEIRS = {"child", "guest", "elder", "staff", "carer"}  # who has a room of another name than just a bedroom
-ROLES = {"primary", *THEIRS, "shared", "ensuite"}
 
 
 @dataclass(slots=True)
@@ -100,18 +99,18 @@ class Reading:
     heard: Words
     inventory: Inventory = field(default_factory=Inventory)
     facts: list[Fact] = field(default_factory=list)
-    banned: list[tuple[str, Element]] = field(default_factory=list)
+    banned: list[tuple[str, Mark]] = field(default_factory=list)
     amounts: list[tuple[Mark, Group | None]] = field(default_factory=list)  # None: the whole home
-    flags: dict[str, Element] = field(default_factory=dict)
-    looks: list[Element] = field(default_factory=list)
-    zones: dict[str, tuple[Group, Element]] = field(default_factory=dict)
-    levels: list[Element] = field(default_factory=list)  # words for storeys
+    flags: dict[str, Mark] = field(default_factory=dict)
+    looks: list[Mark] = field(default_factory=list)
+    levels: list[Mark] = field(default_factory=list)  # words for storeys
+    zones: dict[str, tuple[Group, Mark]] = field(default_factory=dict)
     wings: tuple[str, ...] = ()  # zones that lie in parts of their own
     heights: dict[str, int] = field(default_factory=dict)  # the storey of zones, and of all other rooms ("*")
-    entrance: tuple[str, Element] | None = None
-    outside: tuple[str, Element] | None = None  # the owner of a door of its own
-    homes: list[Element] = field(default_factory=list)
-    studio: Element | None = None
+    entrance: tuple[str, Mark] | None = None
+    outside: tuple[str, Mark] | None = None  # the owner of a door of its own
+    homes: list[Mark] = field(default_factory=list)
+    studio: Mark | None = None
     storeys: tuple[int, Mark] | None = None
     rooms: tuple[int, Mark] | None = None  # "a three-room flat"
     people: Mark | None = None  # how many live there
@@ -124,7 +123,7 @@ class Reading:
         """Mark words as understood."""
         self.used.update(range(first, last))
 
-    def say(self, what: str, a: Group, b: Group, element: Element, value: float = 0.0) -> None:
+    def say(self, what: str, a: Group, b: Group, element: Mark, value: float = 0.0) -> None:
         """Record a fact. Whole groups ("*...") mean something to few kinds of fact only."""
         if what not in GROUPS:
             a, b = (tuple(i for i in g if not i.startswith("*")) for g in (a, b))
@@ -135,15 +134,11 @@ class Reading:
             self.facts.append(Fact(what, tuple(dict.fromkeys(a)), tuple(dict.fromkeys(b)), value, element.first, element.last))
 
 
-def _role(e: Element) -> str:
-    return e.role if e.role in ROLES else ""
-
-
-def _many(e: Element) -> bool:
+def _many(e: Mark) -> bool:
     return e.plural or bool(e.det & {"all", "both", "each"}) or e.number > 1
 
 
-def _word(e: Element) -> str:
+def _word(e: Mark) -> str:
     return e.text.rsplit(maxsplit=1)[-1]
 
 
@@ -156,13 +151,13 @@ def close(room: Named, role: str, surface: str, level: int | None = None) -> Nam
     return room
 
 
-def _is_spelt_out(sentence: list[Element], k: int, room: Named) -> bool:
+def _is_spelt_out(sentence: list[Mark], k: int, room: Named) -> bool:
     """Whether a phrase spells out a count in front of a colon or a bracket: "three bedrooms: a master, two for the kids"."""
     j = next((j for j in range(k - 1, -1, -1) if sentence[j].kind in {"colon", "open"}), 0)
     return any(room.id in x.ids and len(x.ids) > 1 for x in sentence[:j])
 
 
-def _before(sentence: list[Element], k: int, *breaks: str) -> Element | None:
+def _before(sentence: list[Mark], k: int, *breaks: str) -> Mark | None:
     """Return the phrase of the same type in front of k, with none of the kinds that break a list between."""
     for e in reversed(sentence[:k]):
         if e.kind in breaks:
@@ -172,10 +167,10 @@ def _before(sentence: list[Element], k: int, *breaks: str) -> Element | None:
     return None
 
 
-def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[str]:
+def name(state: Reading, sentence: list[Mark], k: int, level: int | None) -> Group:
     """Return the ids of the rooms that the phrase k names; make those that are missing."""
     e, stock = sentence[k], state.inventory
-    e.ids = e.ids or [r.id for r in _resolve_phrase(state, sentence, k, level)]
+    e.ids = e.ids or tuple(r.id for r in _resolve_phrase(state, sentence, k, level))
     for room in (stock.get(i) for i in e.ids):
         room.span = room.span or (e.first, e.last)
         room.functions |= e.functions
@@ -183,10 +178,10 @@ def name(state: Reading, sentence: list[Element], k: int, level: int | None) -> 
     return e.ids
 
 
-def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
-    e, stock, role = sentence[k], state.inventory, _role(sentence[k])
+def _resolve_phrase(state: Reading, sentence: list[Mark], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
+    e, stock, role = sentence[k], state.inventory, sentence[k].role
     same = stock.of(e.type)
-    suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), None) if e.type == "bedroom" and not role else None
+    suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), ()) if e.type == "bedroom" and not role else ()
     if suites and not e.ordinal and not e.number:
         return [stock.get(i) for i in suites]
     halls = [r for r in stock.rooms if r.type in {"hallway", "entry"} and _word(e) in r.surface.split()]
@@ -198,7 +193,10 @@ def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int 
         same = stock.of(e.type)
         return [close(r, role, e.text) for r in ([r for r in same if r.open_slot] or same)[: e.part]]
     if e.index:
-        return [_indexed_room(state, e, role, level)]
+        free = [r for r in same if not r.index and r.open_slot]
+        room = next((r for r in same if r.index == e.index), None) or (free[0] if free else stock.add(e.type, role, e.text, level))
+        room.index, room.open_slot = e.index, False
+        return [room]
     if e.ordinal:
         return _ordinal(state, e, role, level)
     if "other" in e.det:
@@ -207,183 +205,156 @@ def _resolve_phrase(state: Reading, sentence: list[Element], k: int, level: int 
     return rooms or _new(state, e, int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1)), role, level)
 
 
-def _new(state: Reading, e: Element, count: int, role: str, level: int | None) -> list[Named]:
+def _new(state: Reading, e: Mark, count: int, role: str, level: int | None) -> list[Named]:
     return [state.inventory.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
 
 
-def _fill(state: Reading, e: Element, count: int) -> None:
+def _fill(state: Reading, e: Mark, count: int) -> None:
     """Add rooms of a phrase's type that nothing is said of yet until there are so many."""
     while len(state.inventory.of(e.type)) < count:
         state.inventory.add(e.type, "", e.text, None, open_slot=True)
 
 
-def _others(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:
+def _others(state: Reading, sentence: list[Mark], k: int, role: str, level: int | None) -> list[Named]:
     """Return "the other two bedrooms": those that nothing was said of, new ones where they are too few."""
-    e, stock = sentence[k], state.inventory
-    same = stock.of(e.type)
+    e, same = sentence[k], state.inventory.of(sentence[k].type)
     mentioned = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids} | set(state.topic)
-    rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in mentioned] or ([] if len(same) == 1 else same[-1:])
-    if e.number and e.type == "bedroom":
-        mentioned |= {g[0] for g in state.past if len(g) == 1}
-        rest = [r for r in rest if r.open_slot or r.id not in mentioned]
-        rest += [stock.add(e.type, role, e.text, level) for _ in range(int(e.number) - len(rest))]
-        return rest[-int(e.number) :]
-    return (rest if _many(e) else [close(r, "", e.text) for r in rest[:1]]) or [stock.add(e.type, role, e.text, level)]
+    rest = [r for r in same if r.open_slot] or [r for r in same if r.id not in mentioned] or same[1:]
+    if e.number:
+        return rest[-int(e.number) :] + _new(state, e, int(e.number) - len(rest), role, level)
+    return (rest if _many(e) else [close(r, "", e.text) for r in rest[:1]]) or _new(state, e, 1, role, level)
 
 
-def _indexed_room(state: Reading, e: Element, role: str, level: int | None) -> Named:
+def _ordinal(state: Reading, e: Mark, role: str, level: int | None) -> list[Named]:
     same = state.inventory.of(e.type)
-    known = [r for r in same if r.index == e.index] or [r for r in same if not r.index and r.open_slot]
-    room = known[0] if known else state.inventory.add(e.type, role, e.text, level)
-    room.index, room.open_slot = e.index, False
-    return room
-
-
-def _ordinal(state: Reading, e: Element, role: str, level: int | None) -> list[Named]:
-    stock, same = state.inventory, state.inventory.of(e.type)
     if len(same) >= e.ordinal:
         rest = same if e.ordinal == 1 else [r for r in same if r.role != "primary"]
-        loose = [r for r in rest if r.open_slot] or rest[-1:]
-        return [close(loose[0], role, e.text)] if loose else same[:1]
-    if any(r.whole for r in same):
-        state.say("beyond", tuple(r.id for r in same), (), e, float(e.ordinal))
-        return same[-1:]
+        return [close(r, role, e.text) for r in ([r for r in rest if r.open_slot] or rest[-1:] or same)[:1]]
+    _within(state, e, e.ordinal)
     _fill(state, e, e.ordinal - 1)
-    return [stock.add(e.type, role, e.text, level)]
+    return _new(state, e, 1, role, level)
 
 
-def _by_role(state: Reading, sentence: list[Element], k: int, role: str, level: int | None) -> list[Named]:
+def _within(state: Reading, e: Mark, count: float) -> None:
+    """Refuse more rooms of a type than a whole count allows: "a two-bedroom flat ... the third bedroom"."""
+    same = state.inventory.of(e.type)
+    if count > MAX_ROOMS or (count > len(same) and any(r.whole for r in same)):
+        words = [state.heard.quote(*r.span, "rooms") for r in same if r.span is not None]
+        what = f"{count:g} {e.type.replace('_', ' ')}s are asked for" + (f", and {len(same)} besides" if same else "")
+        raise ImpossibleError(
+            what, "keep one of the two counts", [*dict.fromkeys(words), state.heard.quote(max(e.first - 1, 0), e.last, "rooms")]
+        )
+
+
+def _by_role(state: Reading, sentence: list[Mark], k: int, role: str, level: int | None) -> list[Named]:
     """Return the rooms of a role; one that was only counted may take it."""
     e, same, many = sentence[k], state.inventory.of(sentence[k].type), _many(sentence[k])
     rooms = [r for r in same if r.role == role]
-    bare_nouns = "bare_nouns" in state.heard.lexicon.traits
     if rooms and (many or not e.introduces):
         return rooms if many else rooms[:1]
-    plain = [
-        r
-        for r in same
-        if not r.role and r.id not in state.inventory.belongings and not (r.extra and r.span is not None and r.span[0] > e.first)
-    ]
+    plain = [r for r in same if not r.role and r.id not in state.inventory.belongings and not _later(r, e.first)]
     if e.type == "bathroom":
-        slots = [r for r in same if r.open_slot and not r.role]
-        known = slots or (plain if len(plain) == 1 and (e.definite or (bare_nouns and not e.det and not e.number)) else [])
-        return [close(known[0], role, e.text)] if known and role not in {"ensuite", "primary"} else []
+        bare = "bare_nouns" in state.heard.lexicon.traits and not e.det and not e.number
+        slots = [r for r in same if r.open_slot] or (plain if len(plain) == 1 and (e.definite or bare) else [])
+        return [close(slots[0], role, e.text)] if slots and role not in {"ensuite", "primary"} else []
     listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")  # "two bedrooms and a guest room": none of the two
     slots = [
         r
         for r in plain
         if r.open_slot
         and (e.definite or r.whole or _is_spelt_out(sentence, k, r) or listed is None or r.id not in listed.ids)
-        and ((e.definite and level is None) or r.level is None or r.level == level)  # counted on another storey: others
+        and (r.level in {None, level} or (e.definite and level is None))  # counted on another storey: others
     ]
     if slots:
         return [close(r, role, e.text) for r in slots[: int(e.number or len(slots)) if many else 1]]
-    return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite and not many else []
+    return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite else []
 
 
-def _known_rooms(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:
+def _later(room: Named, place: int) -> bool:
+    """Whether a room that is none of those named in front ("another bathroom") is first named behind a place."""
+    return room.extra and room.span is not None and room.span[0] > place
+
+
+def _known_rooms(state: Reading, sentence: list[Mark], k: int, level: int | None) -> list[Named]:
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
-    bare_nouns = "bare_nouns" in state.heard.lexicon.traits
-    same = [r for r in stock.of(e.type) if not (r.extra and r.span is not None and r.span[0] > e.first)]
+    same = [r for r in stock.of(e.type) if not _later(r, e.first)]
     if not _many(e) and e.type in {"bathroom", "bedroom"}:  # "... a bath; further a guest bath"
         same = [r for r in same if not (r.role in ROLES and r.span is not None and r.span[0] > e.last)]
-    if e.type == "bedroom" and not _many(e) and "other" not in e.det:  # "das Kinderzimmer ..., das Schlafzimmer ..."
+    if e.type == "bedroom" and not _many(e):  # "das Kinderzimmer ..., das Schlafzimmer ..."
         same = [r for r in same if r.role not in THEIRS or _word(e) in r.surface.split()]
     if level is not None:
-        here = [r for r in same if r.level in {None, level}]
-        same = here if here or (not e.definite and not e.plural) else same
+        same = [r for r in same if r.level in {None, level}] or (same if e.definite else [])
     if _many(e):
-        return _several(state, e, same)
-    owned = e.type == "bathroom" and not bare_nouns and all(r.id in stock.belongings or r.role == "ensuite" for r in same)
+        _within(state, e, e.number)
+        return same
+    bare_nouns, theirs = "bare_nouns" in state.heard.lexicon.traits, all(r.id in stock.belongings or r.role == "ensuite" for r in same)
+    owned = e.type == "bathroom" and not bare_nouns and theirs
     other = e.type == "storage" and all(e.text != r.surface for r in same)
     if not e.det and (owned or other):
-        return [stock.add(e.type, "", e.text, level)]  # "a master with en suite, ..., bathroom"
+        return _new(state, e, 1, "", level)  # "a master with en suite, ..., bathroom"
     if len(same) > 1:
         same = [r for r in same if _word(e) in r.surface.split()] or same
         return ([r for r in same if not r.role] or same)[:1]
     return same
 
 
-def _several(state: Reading, e: Element, same: list[Named]) -> list[Named]:
-    """Return "the two bedrooms" of those that are known."""
-    stock, number = state.inventory, int(e.number or (2 if "both" in e.det and e.type == "bedroom" else 0))
-    if number > len(same) and e.definite and not any(r.whole for r in same):
-        _fill(state, e, number)
-        return stock.of(e.type)
-    if number > len(same):
-        state.say("beyond", tuple(r.id for r in same), (), e, float(number))
-    return same
-
-
 # what numbers and articles introduce
 
 
-def introduce(state: Reading, sentences: list[list[Element]]) -> None:
+def introduce(state: Reading, sentences: list[list[Mark]]) -> None:
     """Make the rooms that numbers and indefinite articles introduce: whole counts first, so that later words may tell them apart."""
     for whole in (True, False):
         for sentence in sentences:
             first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every"}), None)
             level = int(first.value) if first is not None and first.kind == "level" else None
-            suites = False  # "a suite: ... a bedroom": the suite's own
             for k, e in enumerate(sentence):
                 if e.kind == "level" and (not (level is None and k) or heads(sentence, k)):
                     level = int(e.value)
-                suites = suites or (e.kind == "np" and e.suite)
+                suites = any(x.suite for x in sentence[: k + 1])  # "a suite: ... a bedroom": the suite's own
                 theirs = e.suite or (suites and e.type == "bedroom" and not e.number)
                 if e.kind == "np" and e.introduces and not e.ids and not theirs and _whole(sentence, k) == whole:
-                    _few(state, e)
-                    rooms = _count_all(state, e) if whole else _introduce_rooms(state, sentence, k, backward(sentence, k, level))
-                    e.ids = [r.id for r in rooms]
+                    rooms = _introduce_rooms(state, sentence, k, backward(sentence, k, level)) if not whole else _count(state, e)
+                    e.ids = tuple(r.id for r in rooms)
 
 
-def _few(state: Reading, e: Element) -> None:
-    """Refuse more rooms than a program holds, with the words."""
-    if e.number > MAX_ROOMS:
-        words = [state.heard.quote(max(e.first - 1, 0), e.last, "rooms")]
-        raise ImpossibleError(f"{e.number:g} {e.type.replace('_', ' ')}s are asked for", f"ask for {MAX_ROOMS} rooms at most", words)
+def _count(state: Reading, e: Mark) -> list[Named]:
+    _fill(state, e, int(e.number or 1))
+    rooms = state.inventory.of(e.type)[: int(e.number or 1)]
+    for room in rooms:
+        room.whole, room.span = True, (e.first, e.last)
+    return rooms
 
 
-def _whole(sentence: list[Element], k: int) -> bool:
+def _whole(sentence: list[Mark], k: int) -> bool:
     """Whether the number of a phrase is the count of all such rooms: "a two-bedroom flat", "three baths in total"."""
     e = sentence[k]
-    if e.compound and not e.role:
-        return True
-    near = [*sentence[k + 1 : k + 2], *(sentence[max(0, k - 1) : k] if e.type == "bedroom" and not e.role else [])]
-    return any(x.kind == "flag" and x.value == "total" for x in near) and e.number > 0 and not e.amounts
+    return (e.compound and not e.role) or (
+        e.number > 0 and any(x.kind == "flag" and x.value == "total" for x in sentence[max(0, k - 1) : k + 2])
+    )
 
 
-def _count_all(state: Reading, e: Element) -> list[Named]:
-    stock, count = state.inventory, int(e.number or 1)
-    while len(stock.of(e.type)) < count:
-        room = stock.add(e.type, "", e.text, None, open_slot=True)
-        room.whole, room.span = True, (e.first, e.last)
-    return stock.of(e.type)[:count]
-
-
-def _introduce_rooms(state: Reading, sentence: list[Element], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per case
+def _introduce_rooms(state: Reading, sentence: list[Mark], k: int, level: int | None) -> list[Named]:
     """Return the rooms of a phrase with a number or an indefinite article."""
-    e, stock, role = sentence[k], state.inventory, _role(sentence[k])
+    e, stock, role = sentence[k], state.inventory, sentence[k].role
     count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
     same = stock.of(e.type)
     slots = [r for r in same if r.open_slot and (level is None or r.level in {None, level}) and not r.role]
     candidates = [r for r in slots if r.whole or _is_spelt_out(sentence, k, r)]
-    if e.number and not role and "another" not in e.det and count > len(same) and any(r.whole for r in same):
-        state.say("beyond", tuple(r.id for r in same), (), e, float(count))
-        return same
+    if e.number > MAX_ROOMS or (e.number and not role and "another" not in e.det):
+        _within(state, e, count)
     if slots and k > 1 and sentence[k - 1].kind == "verb" and (sentence[k - 2].kind, sentence[k - 2].value) == ("pron", "one"):
         return [close(r, role, e.text) for r in slots[:count]]  # "four bedrooms, one of which is a guest room"
     if role and role != "ensuite":
-        if len(candidates) >= count and e.type != "bathroom":
+        if len(candidates) >= count:
             return [close(r, role, e.text) for r in candidates[:count]]
     elif not role and slots:
         if len(slots) == count == len(same) and count > 1:
             return slots
-        known = all(r.whole for r in slots) or (e.number and count < len(slots) and len(slots) > 1)
-        if known and count <= len(slots) and _before(sentence, k, "cue", "colon", "open", "verb", "comma") is None:
+        told_apart = all(r.whole for r in slots) or (e.number and count < len(slots))
+        if told_apart and count <= len(slots) and _before(sentence, k, "cue", "colon", "open", "verb", "comma") is None:
             return [close(r, "", e.text, level) for r in slots[:count]]
-    once = count == 1 and not e.number and not role and e.type in ALONE and "another" not in e.det
-    if once and same:
+    if same and count == 1 and not e.number and not role and e.type in ALONE and "another" not in e.det:
         return same[:1]
     rooms = _new(state, e, count, role, level)
     for room in rooms:

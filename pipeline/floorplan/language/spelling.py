@@ -11,8 +11,8 @@ from pipeline.floorplan.language.text import HAN, Token, fold, is_han, tokenize
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
 ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
-LONGEST = 30  # no word of a home is longer
 TINY = kinds("tiny")
+LONGEST = 30  # no word of a home is longer
 FAR, SURELY = 9.0, 1.5  # farther than any word is, and the distance from which on two words as near are no better than none
 
 
@@ -175,13 +175,14 @@ def detect(prompt: str) -> Language:
     if not texts:
         raise RefusedError(_quote_prompt(prompt, "no words in the prompt"), f"say in {_read()} which rooms you want")
     han = sum(is_han(t[0]) for t in texts)
-    foreign = _foreign(tokens)
+    foreign = sum(t.text[0].isalpha() and not re.match(rf"[a-zà-ÿœß{HAN}]", t.text) for t in tokens)  # in a script that is not read
     if han and han >= 0.3 * len(texts) and not foreign:
         return next(language for language in LANGUAGES if _han(language))
-    best, _, exact, close = _likeliest(texts, repaired=False)
-    if exact < SURE * len(texts):  # typing errors, or another language
+    scores = [(*_score(language, texts, repaired=False), language) for language in LANGUAGES if not _han(language)]
+    if max(scores, key=lambda s: s[0])[1] < SURE * len(texts):  # typing errors, or another language
         texts = texts[:REPAIRED]
-        best, _, exact, close = _likeliest(texts, repaired=True)
+        scores = [(*_score(language, texts, repaired=True), language) for language in LANGUAGES if not _han(language)]
+    _, exact, close, best = max(scores, key=lambda s: s[0])
     others = sum(t in unread() for t in texts)
     share = (exact + REPAIR * close + min(han, 2)) / len(texts)
     if foreign > 0.3 * len(texts) or share < ENOUGH or (others > 1 and others >= 0.15 * len(texts)):
@@ -201,19 +202,7 @@ def _read() -> str:
 
 
 def _quote_prompt(prompt: str, why: str) -> str:
-    shown = re.sub(r"\s+", " ", prompt.strip())[:60]
-    return f"{why}: {shown!r}"
-
-
-def _foreign(tokens: list[Token]) -> int:
-    """Count words in a script that no language that is read uses."""
-    return sum(t.text[0].isalpha() and not re.match(rf"[a-zà-ÿœß{HAN}]", t.text) for t in tokens)
-
-
-def _likeliest(texts: list[str], *, repaired: bool) -> tuple[Language, float, int, int]:
-    """Return the language of the best score, with (score, known words, words that are known once repaired)."""
-    scores = [(language, *_score(language, texts, repaired=repaired)) for language in LANGUAGES if not _han(language)]
-    return max(scores, key=lambda s: s[1])
+    return f"{why}: {' '.join(prompt.split())[:60]!r}"
 
 
 def _score(language: Language, texts: list[str], *, repaired: bool) -> tuple[float, int, int]:

@@ -3,7 +3,7 @@
 import functools
 import re
 import unicodedata
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from pydantic import BaseModel, ConfigDict
@@ -18,6 +18,8 @@ ALIKE = str.maketrans(
     "着厅卧卫阳台台储杂书家厨餐间个楼层门独开进关从邻紧连须车库廊过单双几两无碍厕马饭远离总积约达应该宽阔净干湿疗养孙轮椅机电视课学习游戏娱乐缝纫图馆玄关采采浅灰欧风简约与对齐后边里里头顶层阁点顶传统较让给将内别墅还还请号样当这会帮设计画面围绕并须禁毗紧贯穿于",
 )
 MARKS = {"。": ".", "、": "&", ",": ",", ";": ";", ":": ":", "!": "!", "?": "?", "(": "(", ")": ")", "【": "(", "】": ")", "~": "~", "“": " ", "”": " ", "「": " ", "」": " ", "„": " ", "’": "'", "‘": "'", "´": "'", "`": "'", "㎡": "m²", "×": "x", "−": "-", "‐": "-", "‑": "-", "[": "(", "]": ")"}  # fmt: skip
+
+HALVES = {"½": 0.5, "1½": 1.5}
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,14 +49,10 @@ def clean(prompt: str) -> tuple[str, list[int]]:
             continue
         if char in "\n\r\u2028\u2029":
             out = "\n"
-        elif kind[0] == "C" or kind[0] == "Z":
+        elif kind[0] in "CZ":
             out = " "
-        elif char in MARKS:
-            out = MARKS[char]
-        elif char in "²½":
-            out = char
         else:
-            out = unicodedata.normalize("NFKC", char).lower().translate(ALIKE)
+            out = MARKS.get(char) or (char if char in "²½" else unicodedata.normalize("NFKC", char).lower().translate(ALIKE))
         for piece in out:
             if unicodedata.combining(piece) and characters:  # a letter and its accent, written apart
                 joined = unicodedata.normalize("NFC", characters[-1] + piece)
@@ -84,18 +82,11 @@ def _tokens(prompt: str) -> tuple[Token, ...]:
 
 
 def _number(raw: str) -> float | None:
-    if raw in {"½", "1½"}:
-        return 0.5 if raw == "½" else 1.5
-    if not raw[0].isdigit() or raw[-1] == "²":
-        return None
-    if raw in {"m2", "ft2"}:
-        return None
+    if raw in HALVES or not raw[0].isdecimal():
+        return HALVES.get(raw)
     if re.fullmatch(r"\d+([.,]\d{3})+", raw):  # 1,900 and 1.900 are thousands
         return float(re.sub(r"[.,]", "", raw))
-    try:
-        return float(raw.replace(",", "."))
-    except ValueError:
-        return None
+    return float(raw.replace(",", "."))
 
 
 def is_han(char: str) -> bool:
@@ -164,24 +155,12 @@ def forms(rule: Plurals, phrase: str) -> Iterator[tuple[str, bool]]:
 
 
 class Compounds(BaseModel):
-    """How words are put together: what may stand at the joint, tails that a list shares, and the parts of numbers."""
+    """How words are put together: what may stand at the joint, and tails that a list shares."""
 
     model_config = ConfigDict(extra="forbid")
     joints: tuple[str, ...] = ()
     tails: tuple[str, ...] = ()
     melted: dict[str, str] = {}  # prepositions with their article in one word
-    ones: str = ""  # 1 within a number
-    tens: str = ""  # of ones and tens: "{}und{}"
-    hundreds: tuple[str, ...] = ()
-
-    def numbers(self, simple: Mapping[float, str]) -> Iterator[tuple[str, int]]:
-        """Yield the number words from 21 to 199 that are written together, e.g. "fünfundsiebzig", "hundertzwanzig"."""
-        words = {int(n): entry.split(",")[0].strip() for n, entry in simple.items()}
-        units = {n: self.ones if n == 1 else words[n] for n in range(1, 10)}
-        below = {n: w for n, w in words.items() if 0 < n < 100}
-        below |= {t + u: self.tens.format(units[u], words[t]) for t in range(20, 100, 10) for u in units}
-        yield from ((w, n) for n, w in below.items() if n > 20)
-        yield from ((start + w, 100 + n) for start in self.hundreds for n, w in below.items())
 
     def complete(self, texts: list[str], known: Collection[str], joins: Collection[str]) -> list[str]:
         """Return the words with "Arbeits- oder Gästezimmer" written out; the hyphen stays where it is."""
@@ -210,18 +189,13 @@ class Verbs(BaseModel):
     """The forms of verbs that a description uses, told from their infinitives; each is read as the present of the third person."""
 
     model_config = ConfigDict(extra="forbid")
+    infinitives: str = ""
     ends: dict[str, str] = {}  # of an infinitive -> of the third person of one, the present first; the longest that fits
     plural: str = ""  # what the forms of many have besides
     known: dict[str, str] = {}  # of an infinitive -> of forms that are only known not to be errors
     irregular: dict[str, str] = {}  # infinitive -> all its forms, "one|many" where the plural is another
-    genders: str = ""  # of a participle, the one that is listed first
-    reflexive: str = ""
     twofold: str = ""  # forms that are other words too
     contracted: dict[str, str] = {}  # prepositions with their article in one word
-
-    def infinitive(self, word: str) -> bool:
-        """Whether a word is an infinitive."""
-        return word.endswith(tuple(self.ends))
 
     def forms(self, infinitive: str) -> list[tuple[str, str]]:
         """Return (of one, of many) for each tense of the third person, the present first: ("abre", "abren"), ("abrirá", "abrirán")."""
@@ -229,37 +203,19 @@ class Verbs(BaseModel):
         parted = (form.partition("|") for form in (irregular.split() if irregular else _with_ends(infinitive, self.ends)))
         return [(one, many or one + self.plural) for one, _, many in parted]
 
-    def canonical(self, infinitives: Iterable[str]) -> dict[str, str]:
-        """Return folded form -> folded form of the present, for every tense of these verbs; words that mean something else besides are left out."""
+    def canonical(self) -> dict[str, str]:
+        """Return folded form -> folded form of the present, for every tense of the verbs; words that mean something else besides are left out."""
         by_form: dict[str, str] = {}
         twofold = set(self.twofold.split())
-        for present, *others in map(self.forms, infinitives):
+        for present, *others in map(self.forms, self.infinitives.split()):
             for form, shown in ((fold(f), fold(s)) for pair in others for f, s in zip(pair, present, strict=True)):
                 if form not in twofold and form != shown:
                     by_form.setdefault(form, shown)
         return by_form
 
-    def further(self, infinitive: str) -> list[str]:
+    def further(self) -> list[str]:
         """Return the present, gerunds, participles and forms of "we" and "I", which are only known not to be errors."""
-        return [*self.forms(infinitive)[0], *_with_ends(infinitive, self.known)]
-
-    def conjugate(self, phrase: str) -> Iterator[str]:
-        """Yield "dar a" as "dar a", "da a", "da al", "se da a", "dan al" ...: the forms that are left, prepositions with their article too."""
-        verb, _, rest = phrase.partition(" ")
-        if not self.infinitive(verb):  # "conectado con": of one or many, of both genders
-            first, *others = self.genders.split()
-            head = next((w for w in phrase.split() if w.endswith(first) and len(w) > 4), "")
-            for end in (first, *others) if head else ("",):
-                yield from self._joined(phrase.replace(head, head.removesuffix(first) + end, 1) if head else phrase)
-            return
-        for form in (verb, *self.forms(verb)[0]):
-            for end in self._joined(rest):
-                yield f"{form} {end}".strip()
-                yield (f"{form}{self.reflexive} {end}" if form == verb else f"{self.reflexive} {form} {end}").strip()
-
-    def _joined(self, phrase: str) -> tuple[str, ...]:
-        head, _, last = phrase.rpartition(" ")
-        return (phrase, f"{head} {self.contracted[last]}".strip()) if last in self.contracted else (phrase,)
+        return [w for verb in self.infinitives.split() for w in (*self.forms(verb)[0], *_with_ends(verb, self.known))]
 
 
 def _with_ends(infinitive: str, table: Mapping[str, str]) -> list[str]:
