@@ -7,10 +7,11 @@ from pathlib import Path
 from pipeline import params
 from pipeline.entry import run
 from pipeline.execution import cores, map_jobs, track
-from pipeline.homes.drafts import Row, draft_rows, write_drafts
+from pipeline.homes.drafts import draft_rows, write_drafts
 from pipeline.homes.factory import open_factory
 from pipeline.homes.prompt_mix import DatasetSettings, requests_of
 from pipeline.homes.request import Request
+from pipeline.homes.rows import Row
 from pipeline.manifest import write_json
 
 

@@ -180,7 +180,7 @@ class Settling:
         if len(group.members) == 1:
             self._settle_one(first)
             return []
-        near, rest = self._near(first), group.members[1:].tolist()
+        near, rest = self._near(first), [int(i) for i in group.members[1:]]
         ways = [lambda: self._close(first, *near), lambda: self._anywhere(first)][: 1 + self.careful]
         place = self._find(group, ways)
         if place is None:

@@ -72,7 +72,8 @@ def _opening(row: Mapping[str, Any]) -> Opening:
 
 def placement_of(row: Mapping[str, Any]) -> Placement:
     """Rebuild a placement from its objects row."""
-    return Placement(**{name: np.array(row[name], ARRAYS[name]) if name in ARRAYS else row[name] for name in PLACEMENT})
+    own: Row = {name: np.array(row[name], ARRAYS[name]) if name in ARRAYS else row[name] for name in PLACEMENT}
+    return Placement(**own)
 
 
 def homes_of(tables: Mapping[str, list[Row]]) -> list[Home]:
