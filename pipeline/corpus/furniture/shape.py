@@ -90,9 +90,9 @@ def group_pieces(parts: Iterable[Piece], group: str) -> Pieces:
     return tuple(replace(piece, group=group) for piece in parts)
 
 
-def staves(name: str, solids: Sequence[Solid], finish: Finish) -> Pieces:
-    """Return the staves of a round wall, three neighbours of which collide as one: finer to see than to touch."""
-    return tuple(Piece(name, solid, finish, group=f"{name}_{k // 3}") for k, solid in enumerate(solids))
+def staves(name: str, solids: Sequence[Solid], finish: Finish, group: str = "", share: int = 3) -> Pieces:
+    """Return the staves of a round wall, `share` neighbours of which collide as one, with those of a `group`: finer to see than to touch."""
+    return tuple(Piece(name, solid, finish, group=f"{group or name}_{k // share}") for k, solid in enumerate(solids))
 
 
 def colliders(parts: Iterable[Piece]) -> list[Solid]:
