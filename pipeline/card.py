@@ -137,7 +137,7 @@ class Category:
     where a room that has such things is named before it ("bed" can be a room). `groups`: of manifests/lexicon/furniture.yaml, to which it
     belongs. `mass`: from light to heavy products [kg], as makers and shipping lists state them; `density` [kg/m3]: of things unlike their
     kind. `felt`: what of it a robot feels, which its colliders keep to: nothing of what is `seen`, the outside of what is `closed` (no hand
-    goes in), less the higher up of what is `yielding`, a lump of what is `soft`. `tuck`: a seat may stand under a table. `usual`: types of a plan's rooms where it stands, the likeliest first; `never`: where not.
+    goes in), more truly where it is `handled`, its hull where it is a `block`, less the higher up of what is `yielding`, a lump of what is `soft`. `tuck`: a seat may stand under a table. `usual`: types of a plan's rooms where it stands, the likeliest first; `never`: where not.
     `lies`: in the middle of its support, at its back, looking where the support looks. `holds`: expected numbers of things on or in it in a
     made home; `lies_on` says the same from the thing's side. `finish`: with which others its finish goes in a room.
     """
@@ -155,7 +155,7 @@ class Category:
     groups: tuple[str, ...] = ()
     density: float | None = None
     signs: Signs = field(default_factory=Signs)
-    felt: Literal["", "seen", "closed", "yielding", "soft"] = ""
+    felt: Literal["", "seen", "closed", "handled", "block", "yielding", "soft"] = ""
     tuck: Literal["", "seat", "table"] = ""
     usual: tuple[str, ...] = ()
     never: tuple[str, ...] = ()

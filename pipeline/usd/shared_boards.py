@@ -20,9 +20,9 @@ from pipeline.usd.articulation import hidden_colliders, is_visual_only, link_nam
 
 Floats = NDArray[np.float64]
 
-# How far a surface may be off as colliders are made, and from where on up nothing is felt (pipeline/sources/meshes/touching.py, and of boards that
-# drawers stand in for articulated/hidden_boards.py): said again, or every change of how furniture is read would make all homes anew.
-BESIDE = 0.025  # [m] sides and backs; no thicker is a board
+# How far tops and undersides may be off as colliders are made, and from where on up nothing is felt (pipeline/sources/meshes/touching.py): said again, or
+# every change of how furniture is read would make all homes anew. Sides may be off by a thick board and the seam behind it.
+BESIDE = 0.04  # [m] sides and backs; no thicker is a board, and on no narrower top does anything lie
 TOP, BELOW = 0.005, 0.15  # [m] what looks up by UP, what looks down
 UP = 0.7
 OVER = 2.0  # [m] above the floor of the storey
@@ -36,6 +36,7 @@ class Piece(NamedTuple):
     box: Floats
     board: tuple[tuple[Floats, Floats], ...] = ()
     path: str = ""
+    top: float = TOP
 
 
 def boards_felt_elsewhere(
@@ -61,15 +62,16 @@ def boards_felt_elsewhere(
         near = there & (boxes[:, 0] <= boxes[k, 1] + BELOW).all(axis=1) & (boxes[:, 1] >= boxes[k, 0] - BELOW).all(axis=1)
         near[k] = False
         name, over = owners[k]
-        if all(_felt_elsewhere(*points, over, [pieces[i].planes for i in np.flatnonzero(near)]) for points in pieces[k].board):
+        beside = [pieces[i].planes for i in np.flatnonzero(near)]
+        if all(_felt_elsewhere(*points, pieces[k].top, over, beside) for points in pieces[k].board):
             there[k] = False
             gone.setdefault(name, []).append(pieces[k].path)
     return gone
 
 
-def _felt_elsewhere(at: Floats, normals: Floats, over: float, planes: list[Floats]) -> bool:
-    """Whether points (P, 3) with normals are as near to other pieces, by their planes, as a surface may be off, or higher than `over`."""
-    allowed = np.where(normals[:, 2] > UP, TOP, np.where(normals[:, 2] < -UP, BELOW, BESIDE))
+def _felt_elsewhere(at: Floats, normals: Floats, top: float, over: float, planes: list[Floats]) -> bool:
+    """Whether points (P, 3) with normals are as near to other pieces, by their planes, as a surface may be off, `top` [m] on top, or higher than `over`."""
+    allowed = np.where(normals[:, 2] > UP, top, np.where(normals[:, 2] < -UP, BELOW, BESIDE))
     near = at[:, 2] > over
     for faces in planes:
         near |= (at @ faces[:, :3].T + faces[:, 3]).max(axis=1) <= allowed
@@ -102,6 +104,7 @@ def _placed(placed: Placement, asset: Asset) -> Iterator[Piece]:
             np.array([corners.min(axis=0), corners.max(axis=0)]),
             board,
             piece.path,
+            piece.top,
         )
 
 
@@ -123,7 +126,8 @@ def _fixed_pieces(asset: Asset) -> list[Piece]:
             box = np.array([points.min(axis=0), points.max(axis=0)])
             path = hidden.get(id(mesh), "")
             board = _samples(hull) if path and np.ptp(box, axis=0).min() <= BESIDE else ()
-            pieces.append(Piece(np.unique(hull.equations.round(9), axis=0), box, board, path))
+            top = BESIDE if np.ptp(box[:, :2], axis=0).min() <= BESIDE else TOP
+            pieces.append(Piece(np.unique(hull.equations.round(9), axis=0), box, board, path, top))
     return pieces
 
 

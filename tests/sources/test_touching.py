@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.spatial import ConvexHull
 
@@ -191,3 +193,49 @@ def test_spindles_of_a_bed_are_one_and_table_legs_stay():
     legs = [block((x, y, 0), (x + 0.04, y + 0.04, 0.7)) for x in (0, 0.5) for y in (0, 0.4)]
     top = block((0, 0, 0.7), (0.54, 0.44, 0.72))
     assert len(simpler([*legs, top], touch_tolerances(categories["dining_table"], opens=False))) == 5
+
+
+def test_a_low_table_stands_on_one_block_but_for_a_shelf_between_its_legs():
+    how = touch_tolerances(taxonomy.load().categories["coffee_table"], opens=False)
+    legs = [block((x, y, 0), (x + 0.04, y + 0.04, 0.4)) for x in (0, 0.9) for y in (0, 0.5)]
+    top, shelf = block((0, 0, 0.4), (0.94, 0.54, 0.43)), block((0.04, 0.04, 0.25), (0.9, 0.5, 0.27))
+    assert sorted(round(float(p.hull[:, 2].max()), 3) for p in simpler([*legs, top], how)) == [0.4, 0.43]
+    assert len(simpler([*legs, top, shelf], how)) == 6
+    assert len(simpler([*legs, top], replace(how, legs=0.3))) == 5  # something comes out at that height
+
+
+def test_under_a_bar_nothing_is_felt_that_the_bar_does_not_keep_one_from():
+    arch = [
+        convex(np.array([(x, y + d, z) for x in (0, 0.02) for y, z in ends for d in (0, 0.02)]), 1.0)
+        for ends in (((0, 0), (0.1, 0.04)), ((0.1, 0.04), (0.2, 0)))
+    ]
+    assert len(fewer(arch, even(0.01), 0.02)) == 2
+    assert len(fewer(arch, even(0.01), 0.02, sag=0.05)) == 1
+    top = block((-0.5, -0.5, 0.06), (0.5, 0.7, 0.08))  # under a worktop one reaches into a drawer
+    assert len(fewer([*arch, top], even(0.01), 0.02, sag=0.05)) == 3
+
+
+def test_each_sector_of_a_bowl_has_its_slice_of_the_floor():
+    turn = 2 * np.pi * np.arange(24) / 24
+    circle = 0.03 * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    floor = convex(np.concatenate([np.column_stack([circle, np.full(24, z)]) for z in (0, 0.006)]), 1.0)
+    wall = []
+    for k in range(24):
+        flat = np.stack([np.cos(turn[[k, (k + 1) % 24]]), np.sin(turn[[k, (k + 1) % 24]])], axis=1)
+        wall.append(
+            convex(
+                np.concatenate(
+                    [np.column_stack([r * flat, np.full(2, z)]) for r, z in ((0.025, 0.006), (0.03, 0.006), (0.075, 0.08), (0.08, 0.08))]
+                ),
+                1.0,
+            )
+        )
+    found = simpler([*wall, floor], Felt(vessel=True))
+    assert len(found) <= 4
+    assert all(p.hull[:, 2].min() == 0 for p in found)
+    assert all((ConvexHull(p.hull).equations @ [0.0, 0.0, 0.07, 1.0]).max() > 0 for p in found)  # its hollow stays
+
+
+def test_a_cup_with_its_handle_is_truer_than_a_bottle():
+    categories = taxonomy.load().categories
+    assert touch_tolerances(categories["cup"], opens=False).sides < touch_tolerances(categories["bottle"], opens=False).sides

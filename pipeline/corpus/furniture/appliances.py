@@ -185,11 +185,11 @@ def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: 
     square = np.array([_on_square(a, x, (0.1, panel), zc) for a in np.arange(24) * 2 * math.pi / 24])
     hole = circle(r - 0.03, 24, (0.0, zc))
     rims = [[np.column_stack([o[:, 0], o[:, 1], np.full(24, k * t)]) for k in (0, 1)] for o in (square, hole)]
-    base += staves("front", standing(shell(rims[0], rims[1]), (0, face + t, 0)), outside)
+    base += staves("front", standing(shell(rims[0], rims[1]), (0, face + t, 0)), outside, "tub", 6)  # a hand meets four walls within
     base += pieces("kick", box(x, (face + 0.01, face + 0.03), (0.012, 0.1)), outside)
     drum = ring((r - 0.025, r - 0.025), (r - 0.035, r - 0.035), (-d / 2 + 0.1, -face - t - 0.002), 24)
     end = revolve([(r - 0.03, -d / 2 + 0.085), (r - 0.03, -d / 2 + 0.1)], 24)
-    base += staves("drum", standing(drum, (0, 0, zc)), "steel") + pieces("drum_end", standing(end, (0, 0, zc)), "steel")
+    base += staves("drum", standing(drum, (0, 0, zc)), "steel", "tub", 6) + pieces("drum_end", standing(end, (0, 0, zc)), "steel")
     drawer_x = (-w / 2 + 0.03, -w / 2 + 0.2)
     base += pieces("panel", box((drawer_x[1] + 0.003, w / 2 - t), (face, face + t), (panel, h - 0.03), 0.002), outside)
     base += pieces("panel_left", box((x[0] + t, drawer_x[0] - 0.003), (face, face + t), (panel, h - 0.03)), outside)

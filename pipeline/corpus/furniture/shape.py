@@ -87,9 +87,9 @@ def group_pieces(parts: Iterable[Piece], group: str) -> Pieces:
     return tuple(replace(piece, group=group) for piece in parts)
 
 
-def staves(name: str, solids: Iterable[Solid], material: Material) -> Pieces:
-    """Return the staves of a round wall, three neighbours of which collide as one: finer to see than to touch."""
-    return tuple(replace(piece, group=f"{name}_{k // 3}") for k, piece in enumerate(pieces(name, solids, material)))
+def staves(name: str, solids: Iterable[Solid], material: Material, group: str = "", share: int = 3) -> Pieces:
+    """Return the staves of a round wall, `share` neighbours of which collide as one, with those of a `group`: finer to see than to touch."""
+    return tuple(replace(piece, group=f"{group or name}_{k // share}") for k, piece in enumerate(pieces(name, solids, material)))
 
 
 def colliders(parts: Iterable[Piece]) -> list[Solid]:

@@ -16,12 +16,13 @@ from pipeline.sources.articulated.shape_reader import distinct_names
 from pipeline.sources.densities import density
 from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
 from pipeline.sources.meshes.inertials import Inertial, combine_inertials, inertia_flaw, mass_flaw
-from pipeline.sources.meshes.touching import ANY, BUMPED, LEFT_ALONE, OVER, UNDER, touch_tolerances
+from pipeline.sources.meshes.touching import ANY, BUMPED, LEFT_ALONE, LOW, OVER, SAG, UNDER, touch_tolerances
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.taxonomy import Taxonomy
 
 Floats = NDArray[np.float64]
+LIDS = ("hinge_lid", "slider_lid")
 SHORT = {"gapartnet": "ga", "partnet-mobility": "pm", "urdf": "ur"}
 
 
@@ -51,17 +52,20 @@ def assets(
     for number, fit in enumerate(fits):
         category = taxonomy.categories[fit.category]
         kind, how = category.super, touch_tolerances(category, opens=True)
-        lowest = min([UNDER, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
+        lowest = min([LOW, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
         over = OVER if category.mount == "floor" else ANY
-        below = how if category.loose else replace(how, sides=BUMPED, down=LEFT_ALONE, under=lowest, over=over)
+        # nothing comes into a lid from below
+        felt = {joint.child: replace(how, down=LEFT_ALONE) for joint in shape.joints if joint.part_class in LIDS}
+        if not category.loose:
+            felt[0] = replace(how, sides=BUMPED, down=LEFT_ALONE, under=min(UNDER, lowest), over=over, sag=SAG, legs=lowest)
         links: list[Link] = []
         weighed = []
-        for body, solid in zip(bodies, matter, strict=True):
+        for k, (body, solid) in enumerate(zip(bodies, matter, strict=True)):
             real = solid.scaled(middle, fit.scale)
             stated, note = _stated_inertial(body, real, middle, fit, kind)
             weighed += note
             visuals = [replace(m, vertices=((m.vertices - middle) * fit.scale).astype(np.float32)) for m in body.visuals]
-            links.append(link(body.name, visuals, real, density(kind, "", fit.category), kind, stated, how if links else below))
+            links.append(link(body.name, visuals, real, density(kind, "", fit.category), kind, stated, felt.get(k, how)))
         shown = links if category.loose else without_hidden(links, shape.joints)
         asset = Asset(
             f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),

@@ -19,7 +19,7 @@ from pipeline.sources.meshes.feet import without_feet
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, convex, extremes, qhull_of
 from pipeline.sources.meshes.near_boxes import NEAR
 from pipeline.sources.meshes.reach import make_reach_test
-from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors
+from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors, with_floor
 from pipeline.sources.meshes.rows import blocks
 
 Floats = NDArray[np.float64]
@@ -37,19 +37,22 @@ LEVEL = 0.95  # ... on which they lie on cushions: an edge that slopes more bear
 TOUCHED = 0.005  # [m] how far a collider's surface may be off where hands and things come
 BUMPED = 0.02  # ... where a robot comes with its body at most: the sides of furniture that does not open
 PADDED = 0.03  # ... the rounded edges of cushions and mattresses, whose boxes bear things on a level top
-GIVES = 0.035  # ... what one sits and lies on
+GIVES = 0.045  # ... what one sits and lies on
 SOFT = 0.05  # ... a blanket with its fringe, what hangs on a wall
-BETWEEN = 0.065  # ... from the spindles of a chair's back or a bed's end, between which nothing comes
+BETWEEN = 0.08  # ... from the spindles of a chair's back or a bed's end, between which nothing comes
 LEFT_ALONE = 0.15  # ... from underneath, and leaves
-HELD = 0.02  # ... the outside of small things that no hand goes into
+HELD = 0.03  # ... the outside of small things that no hand goes into
 ANY = 10.0  # [m]
 HOLLOW, DEEP = 0.3, 0.55  # shares of a vessel's width and height that it may be off within
 OUTWARD = 0.1  # of the normal of a floor within
 UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
 OVER = 2.0  # [m] above the floor that furniture stands on, where nothing of a robot comes
 SEAT = 0.4  # [m] the same under a seat or a mattress, whose legs a robot stands before
+LOW, LEG = 0.5, 0.12  # [m] and under a table too low for a seat to be drawn up to it; how wide a leg of that is at most, or a stretcher
+SAG, BAR = 0.05, 0.03  # [m] under a bar no wider than that which nothing is above, where nothing is felt: the hollow of a tap's arch
 CUSHIONED = frozenset(("bed", "chair", "sofa", "stool"))  # super-categories on which one sits and lies: what things lie on there gives way
 REACH = 0.05  # [m] between pieces that may become one across what lies between them: shelves on both sides of a board
+SEAM = 2e-3  # [m] from the axis of a bowl at which a face is of two sectors that meet
 POT = 0.4  # share of a plant's height up to which it is as hard as other things
 Offer = tuple[float, tuple[int, ...]]  # how much changes, who becomes one
 
@@ -61,7 +64,7 @@ class Felt:
     What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt, higher than `over` nothing.
     A `vessel` is felt from without; within it is but hollow. What is `soft` lies flat. What nobody touches is one piece, `whole`.
     Things lie on what faces upwards by `level`; what is less than `lift` [m] below the top of a piece is drawn up to it. Boxes may stand out by `box` [m] at their corners.
-    Nothing comes through gaps narrower than `cell` [m]; see `make_reach_test`.
+    Nothing comes through gaps narrower than `cell` [m]; see `make_reach_test`. Less than `sag` [m] under a bar nothing is felt. What stands on legs no higher than `legs` [m] stands on a block.
     """
 
     up: float = TOUCHED
@@ -78,25 +81,30 @@ class Felt:
     lift: float = 0.0
     box: float = NEAR
     cell: float = 0.01
+    sag: float = 0.0
+    legs: float = 0.0
 
 
 FELT = MappingProxyType(  # by what cards say
     {
         "seen": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
+        "block": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
         "soft": Felt(SOFT, SOFT, SOFT, soft=True),
         "yielding": Felt(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True),
         "closed": Felt(BUMPED, closed=True),
+        "handled": Felt(BUMPED, closed=True),
     }
 )
+OFF = MappingProxyType({"closed": HELD, "handled": BUMPED})  # of small things
 
 
 def touch_tolerances(category: Category, *, opens: bool) -> Felt:
     """Return how truly a thing of a category is felt: hands come to what is small and to what opens, bodies to other furniture."""
     if category.felt:
         felt = FELT[category.felt]
-        if category.felt != "closed" or not (category.loose or category.mount == "wall"):
-            return felt
-        return replace(felt, sides=HELD, down=HELD) if category.loose else replace(felt, sides=SOFT, down=LEFT_ALONE)
+        if category.loose and category.felt in OFF:
+            return replace(felt, sides=OFF[category.felt], down=OFF[category.felt])
+        return replace(felt, sides=SOFT, down=LEFT_ALONE) if category.felt == "closed" and category.mount == "wall" else felt
     if category.loose:
         return Felt(vessel=True)
     if opens:
@@ -105,7 +113,7 @@ def touch_tolerances(category: Category, *, opens: bool) -> Felt:
         under = SEAT if category.tuck == "seat" or category.super == "bed" else UNDER
         return Felt(GIVES, BETWEEN, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
     over = OVER if category.mount == "floor" else ANY
-    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED)
+    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED, sag=SAG, legs=LOW)
 
 
 def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
@@ -116,6 +124,8 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
         return (combine_parts(pieces),)
     points = np.concatenate([p.hull for p in pieces])
     low = float(points[:, 2].min())
+    legs = _legs(pieces, low, how.legs)
+    pieces = [p for p in pieces if all(p is not leg for leg in legs)]
     below = [p for p in pieces if p.hull[:, 2].max() <= low + how.under]
     if len(below) > 1:
         pieces = [*(p for p in pieces if p.hull[:, 2].max() > low + how.under), combine_parts(below)]
@@ -128,8 +138,35 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
     elif how.up <= TOUCHED:
         pieces = blocks(pieces)
     allowed = _tolerance(pieces, how)
-    fewer_pieces = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT), allowed)
+    fewer_pieces = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT, sag=how.sag), allowed)
+    if how.vessel:
+        fewer_pieces = _with_floors(fewer_pieces, pieces, allowed)
+    if legs:
+        fewer_pieces = (*fewer_pieces, combine_parts(legs))
     return tuple(_level_top(p, how.lift) for p in fewer_pieces) if how.lift else fewer_pieces
+
+
+def _with_floors(pieces: Sequence[Part], original: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
+    """Return the sectors of a bowl, each with its slice of the floor that they stand around, in place of sectors and floor; see `fewer` for `allowed`."""
+    sliced, middle = with_floor(pieces)
+    planes = [_planes(p.hull) for p in original]
+
+    def between(at: Floats, normals: Floats) -> Floats:
+        cut = (np.abs(((at[:, :2] - middle) * normals[:, :2]).sum(axis=1)) < SEAM) & (np.abs(normals[:, 2]) < UP)  # where sectors meet
+        return np.where(cut, ANY, allowed(at, normals))
+
+    return tuple(sliced) if all(_deviation(p.hull, planes, between) is not None for p in sliced) else tuple(pieces)
+
+
+def _legs(pieces: Sequence[Part], low: float, most: float) -> list[Part]:
+    """Return what is under the lowest thing wider than LEG that ends above UNDER, where that is no higher than LOW and no leg than `most` [m]."""
+    tops, bottoms = np.array([[p.hull[:, 2].max(), p.hull[:, 2].min()] for p in pieces]).T - low
+    wide = np.array([np.ptp(p.hull[:, :2], axis=0).min() > LEG for p in pieces])
+    deck = float(bottoms[wide & (tops > UNDER)].min(initial=np.inf))
+    legs = tops <= deck + TOUCHED
+    if deck > LOW or not UNDER < tops[legs].max(initial=0.0) <= most + TOUCHED:
+        return []
+    return [p for p, is_leg in zip(pieces, legs, strict=True) if is_leg]
 
 
 def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
@@ -140,7 +177,7 @@ def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
 
     def least(at: Floats, normals: Floats) -> Floats:
         tolerance = allowed(at, normals)
-        return np.where(tolerance < ANY, np.minimum(tolerance, HELD), ANY)
+        return np.where(tolerance < ANY, np.minimum(tolerance, BUMPED), ANY)
 
     planes = [_planes(p.hull) for p in pieces]
     kept = set(range(len(pieces)))
@@ -240,16 +277,19 @@ def discs(pieces: Sequence[Part]) -> list[Part]:
     return [disc for level in levels for disc in (level if len(level) < STAVES else [combine_parts(level)])]
 
 
-def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, rings: bool = True) -> tuple[Part, ...]:
+def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, rings: bool = True, sag: float = 0.0) -> tuple[Part, ...]:
     """Return convex pieces [m] merged as long as no surface point goes further from where it was than is `allowed` there.
 
     All at once where that may be, else the staves of `rings` in sectors, then pairs, those that change least first. Pieces whose boxes are
-    more than `apart` [m] from each other are no pair.
+    more than `apart` [m] from each other are no pair. What is less than `sag` [m] under a bar is as good as in it.
     """
     if not 2 <= len(pieces) <= MOST:
         return tuple(pieces)
-    planes = [_planes(p.hull) for p in pieces]
     boxes = np.array([[p.hull.min(axis=0), p.hull.max(axis=0)] for p in pieces])
+    hanging = _bars(boxes) if sag else np.zeros(len(pieces), bool)
+    planes = [
+        _planes(np.concatenate([p.hull, p.hull - [0.0, 0.0, sag]]) if bar else p.hull) for p, bar in zip(pieces, hanging, strict=True)
+    ]
 
     def share(group: Sequence[int], points: Floats) -> float | None:
         low, high = points.min(axis=0), points.max(axis=0)
@@ -265,6 +305,14 @@ def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, r
         return (combine_parts(pieces),)
     groups = _merge_groups(pieces, sectors(pieces, passes) if rings else [], share, apart)
     return tuple(pieces[g[0]] if len(g) == 1 else combine_parts([pieces[k] for k in g]) for g in groups)
+
+
+def _bars(boxes: Floats) -> NDArray[np.bool_]:
+    """Return which of pieces, by their boxes (P, 2, 3), are narrow and have no other above them."""
+    over = (boxes[:, None, 0, 2] >= boxes[None, :, 1, 2] - TOUCHED) & (boxes[:, None, 0] < boxes[None, :, 1])[:, :, :2].all(axis=2)
+    over &= (boxes[:, None, 1] > boxes[None, :, 0])[:, :, :2].all(axis=2)
+    np.fill_diagonal(over, val=False)
+    return np.asarray((np.ptp(boxes[:, :, :2], axis=1).min(axis=1) <= BAR) & ~over.any(axis=0))
 
 
 def _merge_groups(
