@@ -10,7 +10,7 @@ from pipeline.sources.meshes.mesh_solids import Part
 Floats = NDArray[np.float64]
 
 UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
-LOW, LEG = 0.5, 0.12  # [m] and under a table too low for a seat to be drawn up to it; how wide a leg of that is at most, or a stretcher
+LOW, LEG = 0.55, 0.12  # [m] and under a table too low for a seat to be drawn up to it; how wide a leg of that is at most, or a stretcher
 BAR = 0.03  # [m] how wide a bar is at most
 SEAM = 0.005  # [m] between heights that are one
 
