@@ -2,7 +2,6 @@
 
 import pytest
 
-from pipeline import taxonomy
 from pipeline.sources.settings import FrontFilters
 from pipeline.sources.threed_front.house import openings_of, rooms_of
 from pipeline.sources.threed_front.house_file import parse_house
@@ -17,7 +16,7 @@ def test_openings_are_those_that_a_person_sees(name):
     tree, truth = front_houses.house(name, ways)
     rejects = []
     house = parse_house(tree, name)
-    rooms = rooms_of(house, taxonomy.load(), FrontFilters(), rejects)
+    rooms = rooms_of(house, FrontFilters(), rejects)
     types = {r.room_id: {v: k for k, v in ways.types.items()}.get(r.record.type, r.record.type) for r in rooms}
     found, (inner, outer) = openings_of(house, rooms, FrontFilters(), rejects)
     seen = [(o.kind, tuple(sorted(types[r] for r in o.rooms)), round(o.width, 3)) for o in found]

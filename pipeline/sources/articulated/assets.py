@@ -16,7 +16,8 @@ from pipeline.sources.articulated.shape_reader import distinct_names
 from pipeline.sources.densities import density
 from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
 from pipeline.sources.meshes.inertials import Inertial, combine_inertials, inertia_flaw, mass_flaw
-from pipeline.sources.meshes.touching import ANY, BUMPED, LEFT_ALONE, LOW, OVER, SAG, UNDER, touch_tolerances
+from pipeline.sources.meshes.legs import LOW, UNDER
+from pipeline.sources.meshes.touching import ANY, BUMPED, LEFT_ALONE, OVER, SAG, touch_tolerances
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.taxonomy import Taxonomy

@@ -16,18 +16,17 @@ from scipy.spatial import ConvexHull
 from pipeline.card import Category
 from pipeline.geometry.compiled import compiled
 from pipeline.sources.meshes.feet import without_feet
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, convex, extremes, qhull_of
+from pipeline.sources.meshes.legs import LOW, UNDER, legs_under, narrow_bars
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, extremes, qhull_of
 from pipeline.sources.meshes.near_boxes import NEAR
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors, with_floor
 from pipeline.sources.meshes.rows import blocks
+from pipeline.sources.meshes.soft_shapes import level_top, lie_flat
 
 Floats = NDArray[np.float64]
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
-CORNERS = 8  # of the outline on which a soft thing lies, and of a level top, at most
-SOLE = 0.8  # share of its outline that a soft thing lies on
-RISE = 0.12  # share of its height below which it has no other corners: PhysX tilts what all but lies on a rounded edge
 ROOMY = 50.0  # boards across each other: their box holds so many times what they do, and no hull of theirs is looked at
 MOST = 250  # pieces of a link beyond which it is left as it is
 SAMPLES = (0, 2, 8)  # intervals along a side of the hull's triangles, coarse first; 0: their middles
@@ -45,11 +44,9 @@ HELD = 0.03  # ... the outside of small things that no hand goes into
 ANY = 10.0  # [m]
 HOLLOW, DEEP = 0.3, 0.55  # shares of a vessel's width and height that it may be off within
 OUTWARD = 0.1  # of the normal of a floor within
-UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
 OVER = 2.0  # [m] above the floor that furniture stands on, where nothing of a robot comes
-SEAT = 0.4  # [m] the same under a seat or a mattress, whose legs a robot stands before
-LOW, LEG = 0.5, 0.12  # [m] and under a table too low for a seat to be drawn up to it; how wide a leg of that is at most, or a stretcher
-SAG, BAR = 0.05, 0.03  # [m] under a bar no wider than that which nothing is above, where nothing is felt: the hollow of a tap's arch
+SEAT = 0.4  # [m] above the floor below which legs are one block under a seat or a mattress: a robot stands before them
+SAG = 0.05  # [m] under a bar which nothing is above, where nothing is felt: the hollow of a tap's arch
 CUSHIONED = frozenset(("bed", "chair", "sofa", "stool"))  # super-categories on which one sits and lies: what things lie on there gives way
 REACH = 0.05  # [m] between pieces that may become one across what lies between them: shelves on both sides of a board
 SEAM = 2e-3  # [m] from the axis of a bowl at which a face is of two sectors that meet
@@ -113,7 +110,7 @@ def touch_tolerances(category: Category, *, opens: bool) -> Felt:
         under = SEAT if category.tuck == "seat" or category.super == "bed" else UNDER
         return Felt(GIVES, BETWEEN, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
     over = OVER if category.mount == "floor" else ANY
-    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED, sag=SAG, legs=LOW)
+    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED, legs=LOW)
 
 
 def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
@@ -124,13 +121,13 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
         return (combine_parts(pieces),)
     points = np.concatenate([p.hull for p in pieces])
     low = float(points[:, 2].min())
-    legs = _legs(pieces, low, how.legs)
+    legs = legs_under(pieces, low, how.legs)
     pieces = [p for p in pieces if all(p is not leg for leg in legs)]
     below = [p for p in pieces if p.hull[:, 2].max() <= low + how.under]
     if len(below) > 1:
         pieces = [*(p for p in pieces if p.hull[:, 2].max() > low + how.under), combine_parts(below)]
     if how.soft:
-        pieces = [_flat(combine_parts(pieces))]
+        pieces = [lie_flat(combine_parts(pieces))]
     if how.closed:
         pieces = discs(pieces)
     if how.sides <= TOUCHED:
@@ -143,7 +140,7 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
         fewer_pieces = _with_floors(fewer_pieces, pieces, allowed)
     if legs:
         fewer_pieces = (*fewer_pieces, combine_parts(legs))
-    return tuple(_level_top(p, how.lift) for p in fewer_pieces) if how.lift else fewer_pieces
+    return tuple(level_top(p, how.lift) for p in fewer_pieces) if how.lift else fewer_pieces
 
 
 def _with_floors(pieces: Sequence[Part], original: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
@@ -156,17 +153,6 @@ def _with_floors(pieces: Sequence[Part], original: Sequence[Part], allowed: Allo
         return np.where(cut, ANY, allowed(at, normals))
 
     return tuple(sliced) if all(_deviation(p.hull, planes, between) is not None for p in sliced) else tuple(pieces)
-
-
-def _legs(pieces: Sequence[Part], low: float, most: float) -> list[Part]:
-    """Return what is under the lowest thing wider than LEG that ends above UNDER, where that is no higher than LOW and no leg than `most` [m]."""
-    tops, bottoms = np.array([[p.hull[:, 2].max(), p.hull[:, 2].min()] for p in pieces]).T - low
-    wide = np.array([np.ptp(p.hull[:, :2], axis=0).min() > LEG for p in pieces])
-    deck = float(bottoms[wide & (tops > UNDER)].min(initial=np.inf))
-    legs = tops <= deck + TOUCHED
-    if deck > LOW or not UNDER < tops[legs].max(initial=0.0) <= most + TOUCHED:
-        return []
-    return [p for p, is_leg in zip(pieces, legs, strict=True) if is_leg]
 
 
 def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
@@ -186,20 +172,6 @@ def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
         if others and _deviation(pieces[k].hull, others, least) is not None:
             kept.discard(k)
     return tuple(pieces[k] for k in sorted(kept))
-
-
-def _level_top(part: Part, lift: float) -> Part:
-    """Return a cushion with a level top: what lies on a swell rolls, where a real one gives way."""
-    top = float(part.hull[:, 2].max())
-    upper = _outline(part.hull[part.hull[:, 2] > top - lift])
-    level = np.column_stack([upper[:, :2], np.full(len(upper), top)])  # all of its corners stay, however many the sides have
-    return convex(np.concatenate([extremes(part.hull, MAX_HULL - len(level)), level]), part.volume) or part
-
-
-def _outline(points: Floats) -> Floats:
-    """Return those of points (N, 3) that are farthest out, seen from above, at most CORNERS."""
-    turns = 2 * np.pi * np.arange(CORNERS) / CORNERS
-    return np.asarray(points[np.unique(np.argmax(points[:, :2] @ [np.cos(turns), np.sin(turns)], axis=0))])
 
 
 def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
@@ -261,16 +233,6 @@ def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
     return hollows
 
 
-def _flat(part: Part) -> Part:
-    """Return a soft thing as it lies: its outline, drawn in a little, on what bears it."""
-    around = _outline(part.hull)
-    middle = (part.hull.min(axis=0) + part.hull.max(axis=0)) / 2
-    low, high = part.hull[:, 2].min(), part.hull[:, 2].max()
-    sole = np.column_stack([middle[:2] + SOLE * (around[:, :2] - middle[:2]), np.full(len(around), low)])
-    above = part.hull[part.hull[:, 2] > low + RISE * (high - low)]
-    return convex(np.concatenate([extremes(above, MAX_HULL - len(sole)), sole]), part.volume) or part
-
-
 def discs(pieces: Sequence[Part]) -> list[Part]:
     """Return the pieces with the staves of each ring, all of them between the same heights, as one."""
     levels = [[pieces[k] for k in level] for level in same_height(pieces)]
@@ -286,7 +248,7 @@ def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, r
     if not 2 <= len(pieces) <= MOST:
         return tuple(pieces)
     boxes = np.array([[p.hull.min(axis=0), p.hull.max(axis=0)] for p in pieces])
-    hanging = _bars(boxes) if sag else np.zeros(len(pieces), bool)
+    hanging = narrow_bars(boxes) if sag else np.zeros(len(pieces), bool)
     planes = [
         _planes(np.concatenate([p.hull, p.hull - [0.0, 0.0, sag]]) if bar else p.hull) for p, bar in zip(pieces, hanging, strict=True)
     ]
@@ -305,14 +267,6 @@ def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, r
         return (combine_parts(pieces),)
     groups = _merge_groups(pieces, sectors(pieces, passes) if rings else [], share, apart)
     return tuple(pieces[g[0]] if len(g) == 1 else combine_parts([pieces[k] for k in g]) for g in groups)
-
-
-def _bars(boxes: Floats) -> NDArray[np.bool_]:
-    """Return which of pieces, by their boxes (P, 2, 3), are narrow and have no other above them."""
-    over = (boxes[:, None, 0, 2] >= boxes[None, :, 1, 2] - TOUCHED) & (boxes[:, None, 0] < boxes[None, :, 1])[:, :, :2].all(axis=2)
-    over &= (boxes[:, None, 1] > boxes[None, :, 0])[:, :, :2].all(axis=2)
-    np.fill_diagonal(over, val=False)
-    return np.asarray((np.ptp(boxes[:, :, :2], axis=1).min(axis=1) <= BAR) & ~over.any(axis=0))
 
 
 def _merge_groups(
