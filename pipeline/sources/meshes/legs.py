@@ -18,7 +18,7 @@ SEAM = 0.005  # [m] between heights that are one
 def legs_under(pieces: Sequence[Part], low: float, most: float) -> list[Part]:
     """Return what is under the lowest thing wider than LEG that ends above UNDER, where that is no higher than LOW and no leg than `most` [m]."""
     tops, bottoms = np.array([[p.hull[:, 2].max(), p.hull[:, 2].min()] for p in pieces]).T - low
-    wide = np.array([np.ptp(p.hull[:, :2], axis=0).min() > LEG for p in pieces])
+    wide = np.array([np.sort(np.ptp(p.hull, axis=0))[1] > LEG for p in pieces])  # a board, whichever way it stands
     deck = float(bottoms[wide & (tops > UNDER)].min(initial=np.inf))
     legs = tops <= deck + SEAM
     if deck > LOW or not UNDER < tops[legs].max(initial=0.0) <= most + SEAM:
