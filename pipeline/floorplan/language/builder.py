@@ -18,7 +18,8 @@ SAME = 0.02  # two totals that differ by less are one, said twice
 MOST_STOREYS, MOST_PEOPLE, MOST_COUNTED = 3, 8, 9
 PANORAMA = 8.5  # outside wall of a living room with panoramic glazing [m]
 LUXURY = 1.3
-NARROWEST_DOOR, WIDEST_DOOR, NARROWEST_CORRIDOR = 0.7, 1.2, 0.8  # clear [m]
+NARROWEST_DOOR, NARROWEST_CORRIDOR = 0.7, 0.8  # as built, clear [m]
+BOUNDS = {"ceiling": (1.8, 8.0), "walls": (0.05, 0.6), "doors": (0.6, 1.2), "corridors": (0.7, 3.0), "length": (1.0, 20.0)}  # [m]
 NARROW = {"min_aspect": 1.5, "max_aspect": 2.1}
 OUTLINES: Mapping[str, dict[str, Any]] = {"shape_l": {"shape": "L"}, "shape_t": {"shape": "T"}, "rectangle": {"shape": "rectangle"}, "narrow": NARROW, "chamfered": {"corners": "chamfered"}}  # fmt: skip
 SHELL = {"ceiling": ("ceiling",), "walls": ("inner_wall", "outer_wall"), "inner_walls": ("inner_wall",), "outer_walls": ("outer_wall",)}
@@ -178,10 +179,11 @@ def _amounts(draft: Draft, state: Reading) -> None:
             if not rooms:
                 _total(draft, mark)
         elif mark.value in SHELL:
+            _within_bounds(draft, mark, "walls" if mark.value != "ceiling" else "ceiling", "shell")
             for field in SHELL[mark.value]:
                 draft.cite(mark.first, mark.last, f"shell.{field}")
                 draft.fields["shell"] = {**draft.fields.get("shell", {}), field: mark.number, "stated": True}
-        elif mark.value in {"length", "doors", "corridors"}:
+        elif mark.value in {"doors", "corridors"} or (mark.value == "length" and rooms):
             _length(draft, mark, rooms)
 
 
@@ -215,17 +217,26 @@ def _total(draft: Draft, mark: Mark) -> None:
 
 
 def _length(draft: Draft, mark: Mark, rooms: Sequence[Named]) -> None:
-    value, access = mark.number, draft.fields.setdefault("accessibility", {})
-    if mark.value == "doors" and value <= WIDEST_DOOR:
-        access["min_door"] = max(value, NARROWEST_DOOR)
+    access = draft.fields.setdefault("accessibility", {})
+    what = "corridors" if any(r.type in HALLS for r in rooms) else mark.value
+    _within_bounds(draft, mark, what, "rooms" if what == "length" else "accessibility")
+    if what == "doors":
+        access["min_door"] = max(mark.number, NARROWEST_DOOR)
         draft.cite(mark.first, mark.last, "accessibility.min_door")
-    elif mark.value == "corridors" or any(r.type in HALLS for r in rooms):
-        access["min_corridor"] = max(value, NARROWEST_CORRIDOR)
+    elif what == "corridors":
+        access["min_corridor"] = max(mark.number, NARROWEST_CORRIDOR)
         draft.cite(mark.first, mark.last, "accessibility.min_corridor")
-    elif mark.value == "length":
-        for room in rooms:
-            room.min_width = value
-            draft.cite(mark.first, mark.last, f"rooms.{room.id}.min_width")
+    for room in rooms if what == "length" else ():
+        room.min_width = mark.number
+        draft.cite(mark.first, mark.last, f"rooms.{room.id}.min_width")
+
+
+def _within_bounds(draft: Draft, mark: Mark, what: str, field: str) -> None:
+    """Refuse a length that nothing of its kind has."""
+    low, high = BOUNDS[what]
+    if not low <= mark.number <= high:
+        name = "a room" if what == "length" else what
+        draft.refuse(f"{name} of {mark.number:g} m", f"ask for {low:g} to {high:g} m", [(mark.first, mark.last)], field)
 
 
 # the whole home

@@ -263,7 +263,8 @@ class _Amount:
         factor, value = unit.number, unit.value
         if side is not None and value == "length":
             return Mark("amount", "area", low * factor * factor, bound=self.bound, side=side * factor), i
-        if value == "length" and factor >= FEET - 0.01 and low * factor >= USUAL_HEIGHT:
+        extent = any(m.text in self.lex.sign("extent") or m.value == "wide" for m in self.marks[i : i + 2])  # "20 m high", "20 m de ancho"
+        if value == "length" and not extent and factor >= FEET - 0.01 and low * factor >= USUAL_HEIGHT:
             value, factor = "area", (1.0 if factor == 1.0 else SQUARE_FEET)
         top = None if high is None else high * factor
         return Mark("amount", value, low * factor, high=top, bound=self.bound, total=self.total), i

@@ -178,6 +178,12 @@ def test_storeys_in_words():
         ("12 rooms in 20 m2", "12 rooms"),
         ("Two bedrooms, bath, kitchen next to the living room. The kitchen must not be next to the living room.", "next to"),
         ("a flat of 50 m² with a living room of 60 m² and a bedroom", "60 m²"),
+        ("two bedrooms and a living room 200 m wide", "200 m"),
+        ("dos dormitorios y un salón de 30 m de ancho", "30 m"),
+        ("ein Schlafzimmer 20 cm breit", "20 cm"),
+        ("a two-bedroom flat with ceilings 20 m high", "20 m"),
+        ("a two-bedroom flat with inner walls of 2 m", "2 m"),
+        ("a two-bedroom flat with corridors 9 m wide", "9 m"),
     ],
 )
 def test_contradictions_are_refused_with_their_words(prompt, words):
