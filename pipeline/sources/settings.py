@@ -31,7 +31,7 @@ class ModelLimits:
     max_texture: int = 512  # pixels; larger images are scaled down
     max_pieces: int = 96  # convex colliders per link
     convex_fill: float = 0.95  # a part that fills this share of its hull is convex
-    cut: Literal["none", "articulated", "all"] = "articulated"  # models whose other parts are cut; elsewhere their hull stands
+    cut: Literal["none", "articulated", "all"] = "all"  # models whose other parts are cut; elsewhere their hull stands
     fit_rms: float = 2.5  # standard deviations; a PartNet object that fits no category better is left out
     fit_keep: int = 3  # categories that one PartNet object may serve
     fit_margin: float = 2.0  # log-likelihood that a further category may be worse than the best

@@ -3,9 +3,11 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.spatial import ConvexHull
 
 from pipeline.entities.files import encode, load_asset
 from pipeline.sources.guarded import Folder
+from pipeline.sources.meshes.mesh_solids import outside
 from pipeline.sources.reasons import SourceError
 from pipeline.sources.rows import split_of
 from pipeline.sources.settings import ModelLimits
@@ -131,3 +133,19 @@ def test_splits_are_about_eighty_ten_ten():
         counts[split_of(f"house-{k}")] += 1
     assert counts["train"] == pytest.approx(3200, abs=100)
     assert counts["val"] == pytest.approx(400, abs=60)
+
+
+def test_a_sofa_of_one_mesh_collides_as_its_seats_and_not_in_its_corner(tmp_path):
+    """Real 3D-FUTURE sofas are often one connected surface."""
+    outline = [(0, 0), (2.6, 0), (2.6, 0.9), (0.9, 0.9), (0.9, 1.6), (0, 1.6)]  # x, z of the file
+    n = len(outline)
+    text = "mtllib model.mtl\n" + "".join(f"v {x} {y} {z}\n" for y in (0, 0.42) for x, z in outline)
+    text += "vt 0 0\nusemtl plain\n" + "".join(f"f {k + 1}/1 {(k + 1) % n + 1}/1 {(k + 1) % n + n + 1}/1 {k + n + 1}/1\n" for k in range(n))
+    text += "".join("f " + " ".join(f"{k + 1 + up}/1" for k in face) + "\n" for up in (0, n) for face in ((0, 1, 2, 3), (0, 3, 4, 5)))
+    made = model(tmp_path, text, ModelInfo(BED, "L-shaped Sofa", "Sofa", "Modern", "", "Cloth"))
+    assert "hull_collider" not in {r["reason"] for r in made.rejects}
+    colliders = [ConvexHull(m.vertices).equations for m in made.asset.links[0].colliders]
+    at = np.array([[x, y, 0.2] for x in (-0.8, 0.8) for y in (0.6, -0.6)])  # the last is in the corner
+    distances = np.min([outside(at, planes) for planes in colliders], axis=0)
+    assert (distances[:3] <= 0).all()
+    assert distances[3] > 0.3

@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull
 
 from pipeline import taxonomy
 from pipeline.sources.meshes.feet import without_feet
-from pipeline.sources.meshes.mesh_solids import convex
+from pipeline.sources.meshes.mesh_solids import convex, outside
 from pipeline.sources.meshes.near_boxes import CORNERS
 from pipeline.sources.meshes.touching import FELT, Felt, felt_of, fewer, simpler, touch_tolerances
 
@@ -74,6 +74,16 @@ def test_legs_are_one_block_where_no_hand_comes_and_legs_elsewhere():
     bottom, back = block((0, 0, 0.15), (0.54, 0.44, 0.17)), block((0, 0.42, 0.17), (0.54, 0.44, 0.6))
     assert len(simpler([*legs, bottom, back], Felt(under=0.2))) == 2
     assert len(simpler([*legs, bottom, back], Felt())) == 6
+
+
+def test_no_block_stands_in_the_corner_of_an_l_shaped_sofa():
+    seats = [block((0, 0, 0.15), (3, 1, 0.45)), block((0, 1, 0.15), (1, 2, 0.45))]
+    plinth = [block((0.05, 0.05, 0), (2.95, 0.95, 0.15)), block((0.05, 0.95, 0), (0.95, 1.95, 0.15))]
+    legs = [block((x, y, 0), (x + 0.05, y + 0.05, 0.15)) for x, y in ((0, 0), (2.9, 0), (2.9, 0.9), (0, 1.9), (0.9, 1.9), (0.9, 0.9))]
+    for under in (plinth, legs):
+        found = simpler([*seats, *under], Felt(0.045, 0.08, 0.15, under=0.4, cell=0.02))
+        assert all(outside(np.array([[2.0, 1.5, z]]), ConvexHull(p.hull).equations)[0] > 0.4 for p in found for z in (0.05, 0.3))
+        assert len(found) <= 4
 
 
 def test_what_lies_within_other_pieces_is_not_felt():

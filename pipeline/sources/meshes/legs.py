@@ -1,11 +1,14 @@
-"""What low tables stand on, and bars that nothing is above."""
+"""Blocks in place of what furniture stands on, and bars that nothing is above."""
 
 from collections.abc import Sequence
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
+from shapely.geometry import MultiPoint
+from shapely.geometry.base import BaseGeometry
 
-from pipeline.sources.meshes.mesh_solids import Part
+from pipeline.sources.meshes.mesh_solids import Part, combine_parts
 
 Floats = NDArray[np.float64]
 
@@ -13,6 +16,29 @@ UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are 
 LOW, LEG = 0.55, 0.12  # [m] and under a table too low for a seat to be drawn up to it; how wide a leg of that is at most, or a stretcher
 BAR = 0.03  # [m] how wide a bar is at most
 SEAM = 0.005  # [m] between heights that are one
+BESIDE = 0.02  # [m] how far a block may come out from under what one sees
+
+
+def blocks_under(pieces: Sequence[Part], top: float) -> list[Part]:
+    """Return the pieces with those no higher than `top` [m] as one block, or one under each of the others: no block stands where one sees the floor.
+
+    Under an L-shaped sofa are two blocks: a common one would fill its corner.
+    """
+    plans = [MultiPoint(p.hull[:, :2]).convex_hull for p in pieces]
+    below = [k for k, p in enumerate(pieces) if p.hull[:, 2].max() <= top]
+    above = [k for k in range(len(pieces)) if k not in below]
+    seen = shapely.union_all(plans).buffer(BESIDE)
+    groups = [below]
+    if above and not _hides_no_floor([plans[k] for k in below], seen):
+        owners = [max(above, key=lambda i: (round(plans[k].intersection(plans[i]).area, 6), -i)) for k in below]
+        groups = [[k for k, owner in zip(below, owners, strict=True) if owner == i] for i in above]
+    blocks = [group for group in groups if len(group) > 1 and _hides_no_floor([plans[k] for k in group], seen)]
+    alone = [p for k, p in enumerate(pieces) if not any(k in block for block in blocks)]
+    return [*alone, *(combine_parts([pieces[k] for k in block]) for block in blocks)]
+
+
+def _hides_no_floor(plans: Sequence[BaseGeometry], seen: BaseGeometry) -> bool:
+    return bool(seen.covers(shapely.union_all(plans).convex_hull))
 
 
 def legs_under(pieces: Sequence[Part], low: float, most: float) -> list[Part]:

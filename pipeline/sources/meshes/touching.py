@@ -16,7 +16,7 @@ from scipy.spatial import ConvexHull
 from pipeline.card import Category
 from pipeline.geometry.compiled import compiled
 from pipeline.sources.meshes.feet import without_feet
-from pipeline.sources.meshes.legs import LOW, UNDER, legs_under, narrow_bars
+from pipeline.sources.meshes.legs import LOW, UNDER, blocks_under, legs_under, narrow_bars
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, extremes, qhull_of
 from pipeline.sources.meshes.near_boxes import NEAR
 from pipeline.sources.meshes.reach import make_reach_test
@@ -123,9 +123,7 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
     low = float(points[:, 2].min())
     legs = legs_under(pieces, low, how.legs)
     pieces = [p for p in pieces if all(p is not leg for leg in legs)]
-    below = [p for p in pieces if p.hull[:, 2].max() <= low + how.under]
-    if len(below) > 1:
-        pieces = [*(p for p in pieces if p.hull[:, 2].max() > low + how.under), combine_parts(below)]
+    pieces = blocks_under(pieces, low + how.under)
     if how.soft:
         pieces = [lie_flat(combine_parts(pieces))]
     if how.closed:
