@@ -167,6 +167,15 @@ def _before(sentence: list[Mark], k: int, *breaks: str) -> Mark | None:
     return None
 
 
+def _is_listed_again(sentence: list[Mark], k: int) -> bool:
+    """Whether a bare noun is the next item of a list that has it already: "bedroom 12 m2, bedroom 10 m2" are two."""
+    first, here = _before(sentence, k, "cue", "colon", "verb"), sentence[k]
+    items = [here] if first is None else [first, here]
+    bare = not any(e.det or e.number or e.plural or e.role for e in items)
+    ends = k + 1 == len(sentence) or sentence[k + 1].kind not in {"cue", "verb"}  # of "..., bathroom next to it" it is the subject
+    return first is not None and bare and ends and here.type not in ALONE and sentence[k - 1].kind in {"comma", "join"}
+
+
 def name(state: Reading, sentence: list[Mark], k: int, level: int | None) -> Group:
     """Return the ids of the rooms that the phrase k names; make those that are missing."""
     e, stock = sentence[k], state.inventory
@@ -201,7 +210,8 @@ def _resolve_phrase(state: Reading, sentence: list[Mark], k: int, level: int | N
         return _ordinal(state, e, role, level)
     if "other" in e.det:
         return _others(state, sentence, k, role, level)
-    rooms = _by_role(state, sentence, k, role, level) if role else _known_rooms(state, sentence, k, level) if same else []
+    known = same and not _is_listed_again(sentence, k)
+    rooms = _by_role(state, sentence, k, role, level) if role else _known_rooms(state, sentence, k, level) if known else []
     return rooms or _new(state, e, int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1)), role, level)
 
 
@@ -295,7 +305,9 @@ def _known_rooms(state: Reading, sentence: list[Mark], k: int, level: int | None
         return _new(state, e, 1, "", level)  # "a master with en suite, ..., bathroom"
     if len(same) > 1:
         same = [r for r in same if _word(e) in r.surface.split()] or same
-        return ([r for r in same if not r.role] or same)[:1]
+        one = next((r for r in same if not r.role), same[0])
+        one.open_slot &= not e.adjectives & {"largest", "smallest"}  # "the others" are not it
+        return [one]
     return same
 
 
@@ -352,7 +364,8 @@ def _introduce_rooms(state: Reading, sentence: list[Mark], k: int, level: int | 
         if len(slots) == count == len(same) and count > 1:
             return slots
         told_apart = all(r.whole for r in slots) or (e.number and count < len(slots))
-        if told_apart and count <= len(slots) and _before(sentence, k, "cue", "colon", "open", "verb", "comma") is None:
+        listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")
+        if told_apart and count <= len(slots) and (listed is None or listed is sentence[k - 1]):  # "two bedrooms: one bedroom with"
             return [close(r, "", e.text, level) for r in slots[:count]]
     if same and count == 1 and not e.number and not role and e.type in ALONE and "another" not in e.det:
         return same[:1]

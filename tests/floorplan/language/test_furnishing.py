@@ -135,6 +135,12 @@ def test_whose_wish_it_is():
         ("un piso de dos dormitorios con un sofá", {"living": {"any_sofa"}}),
         ("eine Dreizimmerwohnung mit einem Esstisch", {"living": {"dining_table"}}),
         ("a flat with a bedroom with a sofa", {"bed": {"any_sofa"}}),
+        ("two bedrooms. The first has a double bed, the second has a desk", {"bed": {"double_bed"}, "bed_2": {"desk"}}),
+        ("zwei Schlafzimmer, das erste mit Doppelbett, das zweite mit Schreibtisch", {"bed": {"double_bed"}, "bed_2": {"desk"}}),
+        ("two bedrooms: one bedroom with a double bed, the other with a desk", {"bed": {"double_bed"}, "bed_2": {"desk"}}),
+        ("a bedroom with a double bed and another one with a desk", {"bed": {"double_bed"}, "bed_2": {"desk"}}),
+        ("bedroom with double bed, bedroom with desk, bathroom", {"bed": {"double_bed"}, "bed_2": {"desk"}}),
+        ("two bedrooms. The largest has a double bed, the other a desk", {"bed": {"double_bed"}, "bed_2": {"desk"}}),
     ],
 )
 def test_what_a_home_is_to_have_goes_where_it_usually_stands_and_not_into_the_bedrooms_that_name_it(prompt, rooms):
