@@ -2,7 +2,7 @@
 
 Both ways, on assets of data/assets, each kind in turn: points on the colliders that lie in no other collider of their link, to the
 nearest triangle that is seen; and points that are seen on handles, moving parts, tops and small things, to the colliders (how far
-outside of all they are). Where nothing comes from outside (pipeline/sources/meshes/reach.py), nor above 2 m, there is nothing to touch. Largest and 95th percentile [mm] by what is touched; build/surfaces.json keeps every asset's.
+outside of all they are). Seen from above, no collider may stand where one sees the floor: those that do are named. Where nothing comes from outside (pipeline/sources/meshes/reach.py), nor above 2 m, there is nothing to touch. Largest and 95th percentile [mm] by what is touched; build/surfaces.json keeps every asset's.
 """
 
 import argparse
@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, cKDTree
 from trimesh.triangles import closest_point
@@ -35,6 +36,7 @@ UP = 0.7  # upward part of the normal of a top
 WITHIN = 5e-4  # [m] inside of another piece: no surface
 HAND, BODY = 0.01, 0.02  # [m] gaps into which no hand, no body comes
 OFF = 0.002  # [m] before a surface
+BESIDE, HIDDEN, TINY = 0.03, 0.01, 1e-8  # [m], [m2], [m2]
 RIM = 0.01  # [m] below the top of a small thing: what looks up there is its inside
 
 
@@ -54,6 +56,8 @@ def main() -> None:
         }
         for kind, values in measured.items():
             by_kind[kind].append(values)
+        if (area := hidden_floor(asset)) > HIDDEN:
+            print(f"{asset.asset_id}: {area:.2f} m2 of colliders where one sees the floor")
     (ROOT / "build").mkdir(exist_ok=True)
     (ROOT / "build" / "surfaces.json").write_text(json.dumps(every, indent=1))
     print(f"{len(every)} assets; mm: 95th percentile of all points, worst asset's 95th percentile, largest")
@@ -96,6 +100,16 @@ def errors(asset: Asset, rng: np.random.Generator) -> dict[str, Floats]:
             for kind in set(kinds) - {""}:
                 by_kind[f"{kind}: {way}"].append(values[kinds == kind])
     return {kind: np.concatenate(values) for kind, values in by_kind.items()}
+
+
+def hidden_floor(asset: Asset) -> float:
+    """Return the area [m2], from above, of colliders beyond BESIDE of what is seen."""
+    links = [link for link in asset.links if link.colliders]
+    triangles = np.concatenate([_visual_triangles(link)[0][:, :, :2] for link in links] or [np.zeros((0, 3, 2))])
+    areas = shapely.area(shapely.polygons(triangles))
+    seen = shapely.union_all(shapely.polygons(triangles[areas > TINY])).buffer(BESIDE)
+    felt = shapely.union_all([shapely.convex_hull(shapely.multipoints(c.vertices[:, :2])) for link in links for c in link.colliders])
+    return float(felt.difference(seen).area)
 
 
 def _surface_kinds(
