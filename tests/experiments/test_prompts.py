@@ -1,6 +1,7 @@
 """Prompts of a file: what is read, and what is measured."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -165,3 +166,9 @@ def test_no_check_crashes_on_rooms_that_are_not_there(kind):
         "checks": {"constraints": [{"type": kind, **values, **names}]},
     }
     assert 0.0 <= score(plan, case).constraints <= 1.0
+
+
+def test_the_plans_of_the_benchmark_meet_every_check():
+    found = evaluate_prompts(read_prompts(Path(__file__).parents[2] / "manifests" / "prompts" / "benchmark.yaml"), 1)
+    assert {row["id"]: row["mean"]["strict"] for row in found["prompts"] if row["mean"]["strict"] < 1.0} == {}
+    assert found["mean"]["constraint"] >= 0.945

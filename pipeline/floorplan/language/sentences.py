@@ -104,6 +104,9 @@ def _note(c: Clause, k: int, e: Mark) -> None:
         here = [i for i in named_rooms((*c.latest, *c.subject)) if c.stock.get(i).type not in {"bathroom", "wc", "closet"}]
         c.state.outside = (c.owning or next(iter(here), ""), e)
     elif e.kind == "verb":
+        before = c.near(k - 1)
+        goes_on = before is not None and before.kind in {"and", "comma"} and c.subject and c.objects
+        c.run = [] if goes_on else c.run  # "the bedroom has a bath and is ...": the bedroom is
         c.verb, c.single = True, c.says(e, "singular")
     elif e.kind == "relative":
         c.relative = not c.says(e, "where")

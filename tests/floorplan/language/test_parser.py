@@ -155,6 +155,12 @@ def test_things_kept_apart():
     assert all(r.value == pytest.approx(0.35) for r in program.relations if r.kind == "separation")
 
 
+def test_who_has_something_and_is_somewhere():
+    program = parse("The guest bedroom has its own bath and is well away from the owners' bedroom. Living room, kitchen.")
+    roles = {r.id: r.role or r.type for r in program.rooms}
+    assert [(roles[r.a], roles[r.b]) for r in program.relations if r.kind == "separation"] == [("guest", "primary")]
+
+
 def test_words_not_understood_are_listed():
     program = parse("a two-bedroom flat with a flibbertigibbet and a kitchen")
     assert [s.text for s in program.unparsed] == ["flibbertigibbet"]
