@@ -226,7 +226,9 @@ def screw(tmp):
 
 def open_box(tmp):
     text = making.box_obj(making.SIZES[BED])
-    return with_model(tmp, "\n".join(text.splitlines()[:-1]) + "\n")
+    making.write_library(tmp / "front", (BED,))
+    making.write_model(tmp / "front", BED, "\n".join(text.splitlines()[:-1]) + "\n")
+    return read(tmp, limits={"cut": "none"})
 
 
 def peers(tmp, *, filtered):
