@@ -1,3 +1,5 @@
+import math
+
 import pytest
 import torch
 
@@ -11,7 +13,7 @@ OPENS = torch.tensor([name in {"nightstand", "wardrobe"} for name in CLASSES])
 
 @pytest.fixture(scope="session")
 def settings():
-    return BaselineSettings(seconds=4.0, width=32, layers=2, heads=2, points=16, slots=8, timesteps=100, batch=32, learning_rate=5e-3)
+    return BaselineSettings(seconds=math.inf, width=32, layers=2, heads=2, points=16, slots=8, timesteps=100, batch=32, learning_rate=5e-3)
 
 
 @pytest.fixture(scope="session")
