@@ -28,6 +28,7 @@ from pipeline.entities.files import load_asset
 from pipeline.sources.meshes.mesh_solids import outside
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.touching import OVER
+from pipeline.usd.articulation import is_visual_only
 
 Floats = NDArray[np.float64]
 Reached = Callable[[Floats], NDArray[np.bool_]]
@@ -56,7 +57,7 @@ def main() -> None:
         }
         for kind, values in measured.items():
             by_kind[kind].append(values)
-        if (area := hidden_floor(asset)) > HIDDEN:
+        if not is_visual_only(asset) and (area := hidden_floor(asset)) > HIDDEN:
             print(f"{asset.asset_id}: {area:.2f} m2 of colliders where one sees the floor")
     (ROOT / "build").mkdir(exist_ok=True)
     (ROOT / "build" / "surfaces.json").write_text(json.dumps(every, indent=1))
