@@ -5,6 +5,7 @@ BESIDE behind it, as a chest's sides are its drawers' own. Above OVER nobody fee
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,21 +32,21 @@ UP = 0.7
 OVER = 2.0  # [m] above the floor of the storey
 SAMPLES = (1, 12)  # intervals along a side of a board's triangles, coarse first
 CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])  # of a box (2, 3)
-NO_POINTS = np.zeros((0, 3)), np.zeros((0, 3))
+NO_POINTS = np.zeros((0, 3)), np.zeros(0)
 
 
 class Pieces(NamedTuple):
     """P convex pieces of what is fixed: the planes of piece i are rows faces[i] to faces[i + 1] of `planes` (F, 4), its box `boxes` (P, 2, 3) [m].
 
-    Of a board that may go, rows spread[i] to spread[i + 1] of `points` (N, 3) and `normals` (N, 3) lie on its surface, coarse ones first, and
-    `paths` (P,) names its collider; `tops` (P,) is how far its top may be off [m].
+    Of a board that may go, rows spread[i] to spread[i + 1] of `points` (N, 3) lie on its surface, which looks up by `ups` (N,) there, coarse ones first,
+    and `paths` (P,) names its collider; `tops` (P,) is how far its top may be off [m].
     """
 
     planes: Floats
     faces: Ints
     boxes: Floats
     points: Floats
-    normals: Floats
+    ups: Floats
     spread: Ints
     tops: Floats
     paths: tuple[str, ...]
@@ -79,13 +80,13 @@ def boards_felt_elsewhere(
 @borrowing
 def _felt_elsewhere(pieces: tuple[Any, ...], k: int, over: float, there: Flags, near: Flags) -> bool:
     """Whether all points of piece `k` are higher than `over` [m] or as near to a piece that is `there` (P,) as a surface may be off; `near` (P,) is scratch."""
-    planes, faces, boxes, points, normals, spread, tops = pieces
+    planes, faces, boxes, points, ups, spread, tops = pieces
     for j in range(len(faces) - 1):
         near[j] = there[j] and j != k
         for axis in range(3):
             near[j] &= boxes[j, 0, axis] <= boxes[k, 1, axis] + BELOW and boxes[j, 1, axis] >= boxes[k, 0, axis] - BELOW
     for p in range(spread[k], spread[k + 1]):
-        x, y, z, up = points[p, 0], points[p, 1], points[p, 2], normals[p, 2]
+        x, y, z, up = points[p, 0], points[p, 1], points[p, 2], ups[p]
         allowed = tops[k] if up > UP else BELOW if up < -UP else BESIDE
         felt = z > over
         for j in range(len(faces) - 1):
@@ -106,21 +107,20 @@ def _join(groups: Sequence[Pieces]) -> Pieces:
     if not groups:
         return _pieces([])
     columns = list(zip(*groups, strict=True))
-    planes, boxes, points, normals, tops = (np.concatenate(columns[i]) for i in (0, 2, 3, 4, 6))
+    planes, boxes, points, ups, tops = (np.concatenate(columns[i]) for i in (0, 2, 3, 4, 6))
     faces, spread = (np.concatenate([[0], *(np.diff(ends) for ends in columns[i])]).cumsum() for i in (1, 5))
-    return Pieces(planes, faces, boxes, points, normals, spread, tops, sum(columns[7], ()))
+    return Pieces(planes, faces, boxes, points, ups, spread, tops, tuple(chain.from_iterable(columns[7])))
 
 
 def _pieces(pieces: Sequence[tuple[Floats, Floats, tuple[Floats, Floats], float, str]]) -> Pieces:
-    """Return pieces given each as planes, box, points with normals, top and path."""
+    """Return pieces given each as planes, box, points with how far each looks up, top and path."""
     faces, spread = (np.cumsum([0, *sizes]) for sizes in ([len(p[0]) for p in pieces], [len(p[2][0]) for p in pieces]))
-    none = np.zeros((0, 3))
     return Pieces(
         np.concatenate([np.zeros((0, 4)), *(p[0] for p in pieces)]),
         faces,
         np.array([p[1] for p in pieces]).reshape(-1, 2, 3),
-        np.concatenate([none, *(p[2][0] for p in pieces)]),
-        np.concatenate([none, *(p[2][1] for p in pieces)]),
+        np.concatenate([NO_POINTS[0], *(p[2][0] for p in pieces)]),
+        np.concatenate([NO_POINTS[1], *(p[2][1] for p in pieces)]),
         spread,
         np.array([p[3] for p in pieces], np.float64),
         tuple(p[4] for p in pieces),
@@ -148,7 +148,6 @@ def _placed(placed: Placement, own: Pieces) -> Pieces:
         planes=np.column_stack([ways, own.planes[:, 3] - ways @ placed.position]),
         boxes=np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1),
         points=own.points @ turn + placed.position,
-        normals=own.normals @ turn,
     )
 
 
@@ -171,11 +170,11 @@ def _fixed_pieces(asset: Asset) -> Pieces:
 
 
 def _samples(hull: ConvexHull) -> tuple[Floats, Floats]:
-    """Return points spread over a hull and the normals there, coarse ones before fine ones."""
-    corners, normals = hull.points[hull.simplices], hull.equations[:, :3]
-    points, ways = [], []
+    """Return points spread over a hull and the upward part of the normals there, coarse ones before fine ones."""
+    corners = hull.points[hull.simplices]
+    points, ups = [], []
     for count in SAMPLES:
         weights = np.array([(i, j, count - i - j) for i in range(count + 1) for j in range(count + 1 - i)]) / count
         points.append((weights @ corners).reshape(-1, 3))
-        ways.append(np.repeat(normals, len(weights), axis=0))
-    return np.concatenate(points), np.concatenate(ways)
+        ups.append(np.repeat(hull.equations[:, 2], len(weights)))
+    return np.concatenate(points), np.concatenate(ups)

@@ -235,6 +235,11 @@ def test_interrupt_ends_all_workers(tmp_path):
     assert all(gone(pid) for pid in pids)
 
 
+def test_a_worker_that_is_told_twice_to_leave_says_nothing(capfd):
+    assert sorted(answer for _, answer in map_jobs(work.be_told_twice_to_leave, range(4), workers=2)) == [0, 1, 2, 3]
+    assert not capfd.readouterr().err
+
+
 def test_workers_end_with_a_killed_run(tmp_path):
     program = [sys.executable, str(Path(__file__).parent / "work.py"), str(tmp_path)]
     run = subprocess.Popen(program, env={**os.environ, "PYTHONPATH": str(ROOT)}, start_new_session=True, stderr=subprocess.DEVNULL)

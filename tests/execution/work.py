@@ -1,5 +1,6 @@
 """Steps for the tests of pipeline/execution.py: importable by Dask's workers, and a program to interrupt."""
 
+import atexit
 import functools
 import json
 import os
@@ -53,6 +54,11 @@ def die_of_seven(mark, jobs):
     if 7 in jobs:
         os.kill(os.getpid(), signal.SIGKILL)
     return sum(jobs)
+
+
+def be_told_twice_to_leave(job):
+    atexit.register(os.kill, os.getpid(), signal.SIGTERM)
+    return job
 
 
 def hang_at_two(job):
