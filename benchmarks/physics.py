@@ -5,7 +5,8 @@
 Each engine runs in the first of the given Pythons that has it (this one is tried first), because they do not agree on their
 dependencies: `pip install "mujoco[usd]>=4"` here; `newton newton-usd-schemas scipy "mujoco-warp~=3.17.0" "mujoco~=3.17.0" "usd-core<26.9"`, `ovphysx physx-usd-schemas
 newton-usd-schemas` and `usd-validation-nvidia "usd-core<26.9"` in a virtual environment of its own. An engine that no Python has is left out, and
-named. `assets` puts assets of data/assets, articulated ones and small things in turn, on a floor; `homes` takes those of DATASET.
+named. `assets` puts assets of data/assets, articulated ones and small things in turn, on a floor; `homes` takes those of DATASET;
+without either, both. Joints that one engine opens all at once and another does not, for others are in their way, are named at the end.
 Pushes are those of engines/plan.py, the trial that of engines/trial.py. Everything found lies in build/physics/*.json.
 """
 
@@ -140,9 +141,10 @@ def report(engine: str, records: list[dict[str, Any]], *, faults: bool) -> None:
     stays = (np.abs(left) <= near) | ~limited
     moved = {k: np.concatenate([np.array(r[k], float).reshape(-1, 2) for r in records]) for k in ("moved_shut", "moved_open")}
     still = {k: (m <= STILL).all(axis=1) for k, m in moved.items()}
+    at_rest = [all((np.array(r[k], float).reshape(-1, 2) <= STILL).all() for k in moved) for r in records]
     print(
         f"{engine:10s} {opens.sum()} of {len(joints)} joints open one at a time, {(together >= OPEN).sum()} all at once; {shuts.sum()} shut, "
-        f"{stays.sum()} stay shut; {(~still['moved_shut']).sum()} / {(~still['moved_open']).sum()} of {len(bodies)} things move (shut / open); "
+        f"{stays.sum()} stay shut; {(~still['moved_shut']).sum()} / {(~still['moved_open']).sum()} of {len(bodies)} things move (shut / open), none in {sum(at_rest)} of {len(records)} stages; "
         f"load {np.mean([r['load'] for r in records]):.1f} s of CPU, {np.mean([r['steps_per_second'] for r in records]):.0f} steps/s, {np.mean([r['alone_steps_per_second'] for r in records]):.0f} left alone",
         flush=True,
     )
@@ -156,10 +158,30 @@ def report(engine: str, records: list[dict[str, Any]], *, faults: bool) -> None:
             print(f"    {bodies[k]} {state}: {1000 * m[k, 0]:.1f} mm, {m[k, 1]:.1f} degrees")
 
 
+def compare_engines(results: dict[str, list[dict[str, Any]]]) -> None:
+    """Print how many joints the engines open alike when all are pushed at once, and those which they do not."""
+    by_stage = {engine: {r["stage"]: r for r in records} for engine, records in results.items() if engine != "validator" and records}
+    shared = sorted(set.intersection(*map(set, by_stage.values()))) if len(by_stage) > 1 else []
+    alike, apart = 0, []
+    for stage in shared:
+        reached = {engine: np.array(records[stage]["together"], float) for engine, records in by_stage.items()}
+        opens = np.array([r >= OPEN for r in reached.values()])
+        differ = opens.any(axis=0) & ~opens.all(axis=0)
+        alike += int((~differ).sum())
+        joints = next(iter(by_stage.values()))[stage]["plan"]["joints"]
+        apart += [
+            (stage, joints[k]["path"], {engine: round(float(r[k]), 2) for engine, r in reached.items()}) for k in np.flatnonzero(differ)
+        ]
+    if shared:
+        print(f"all at once, {alike} of {alike + len(apart)} joints alike in {', '.join(by_stage)}, of {len(shared)} stages")
+    for stage, path, shares in apart:
+        print(f"    {stage} {path}: {shares}")
+
+
 def main() -> None:
-    """Make or find the stages, run the engines, print the table."""
+    """Make or find the stages, run the engines, print the tables."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("what", nargs="?", choices=("assets", "homes"), default="assets")
+    options.add_argument("what", nargs="?", choices=("assets", "homes"))
     options.add_argument("--count", type=int, default=BATCH)
     options.add_argument("--dataset", type=Path, default=ROOT / "data" / "shards")
     options.add_argument("--python", nargs="*", default=[])
@@ -168,21 +190,26 @@ def main() -> None:
     given = options.parse_args()
     runs = pythons([sys.executable, *given.python], given.engines.split(","))
     given.out.mkdir(parents=True, exist_ok=True)
-    if given.what == "homes":
-        stages = sorted(p for p in (given.dataset / "usd").glob("*/*.usdc"))[: given.count]
-    else:
-        ids = pick_assets(given.count)
-        stages = [asset_stage(ids[k : k + BATCH], given.out / f"assets_{k:04d}") for k in range(0, len(ids), BATCH)]
-    results = trials(stages, runs, given.out)
+    for what in [given.what] if given.what else ["assets", "homes"]:
+        if what == "homes":
+            stages = sorted((given.dataset / "usd").glob("*/*.usdc"))[: given.count]
+        else:
+            ids = pick_assets(given.count)
+            stages = [asset_stage(ids[k : k + BATCH], given.out / f"assets_{k:04d}") for k in range(0, len(ids), BATCH)]
+        summarise(what, trials(stages, runs, given.out))
+
+
+def summarise(what: str, results: dict[str, list[dict[str, Any]]]) -> None:
+    """Print what the engines found of all stages together."""
     colliders = [r["plan"]["colliders"] for r in next(iter(results.values()), [])]
-    print(
-        f"\n{len(stages)} stages, {np.mean(colliders):.0f} colliders each ({min(colliders)} to {max(colliders)})"
-        if colliders
-        else "nothing ran"
-    )
+    if not colliders:
+        print(f"{what}: nothing ran")
+        return
+    print(f"\n{what}: {len(colliders)} stages, {np.mean(colliders):.0f} colliders each ({min(colliders)} to {max(colliders)})")
     for engine, records in results.items():
         if records:
             report(engine, records, faults=False)
+    compare_engines(results)
 
 
 if __name__ == "__main__":
