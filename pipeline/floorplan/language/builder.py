@@ -11,18 +11,18 @@ from pipeline.floorplan.language.room_links import Draft, join
 from pipeline.floorplan.language.rooms import HALLS, Fact, Named, Reading
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
-from pipeline.floorplan.program.floor_program import MAX_ROOMS, FloorProgram, Style
+from pipeline.floorplan.program.floor_program import MAX_ROOMS, Accessibility, FloorProgram, Shell, Style
 
 ABOUT = 0.1  # "about 75 m2" allows this much either way
 SAME = 0.02  # two totals that differ by less are one, said twice
 MOST_STOREYS, MOST_PEOPLE, MOST_COUNTED = 3, 8, 9
 PANORAMA = 8.5  # outside wall of a living room with panoramic glazing [m]
 LUXURY = 1.3
-NARROWEST_DOOR, NARROWEST_CORRIDOR = 0.7, 0.8  # as built, clear [m]
-BOUNDS = {"ceiling": (1.8, 8.0), "walls": (0.05, 0.6), "doors": (0.6, 1.2), "corridors": (0.7, 3.0), "length": (1.0, 20.0)}  # [m]
+WIDTHS = (1.0, 20.0)  # of a room [m]
 NARROW = {"min_aspect": 1.5, "max_aspect": 2.1}
 OUTLINES: Mapping[str, dict[str, Any]] = {"shape_l": {"shape": "L"}, "shape_t": {"shape": "T"}, "rectangle": {"shape": "rectangle"}, "narrow": NARROW, "chamfered": {"corners": "chamfered"}}  # fmt: skip
 SHELL = {"ceiling": ("ceiling",), "walls": ("inner_wall", "outer_wall"), "inner_walls": ("inner_wall",), "outer_walls": ("outer_wall",)}
+MEASURED = {**SHELL, "doors": ("min_door",), "corridors": ("min_corridor",)}  # what has a length, and its fields of the program
 SMALL = kinds("small")
 BESIDES = kinds("besides")
 STRANGERS = {"guest", "elder", "carer", "staff"}  # whose bedrooms are beside those of the people who live there
@@ -178,12 +178,7 @@ def _amounts(draft: Draft, state: Reading) -> None:
                 _area(draft, mark, room)
             if not rooms:
                 _total(draft, mark)
-        elif mark.value in SHELL:
-            _within_bounds(draft, mark, "walls" if mark.value != "ceiling" else "ceiling", "shell")
-            for field in SHELL[mark.value]:
-                draft.cite(mark.first, mark.last, f"shell.{field}")
-                draft.fields["shell"] = {**draft.fields.get("shell", {}), field: mark.number, "stated": True}
-        elif mark.value in {"doors", "corridors"} or (mark.value == "length" and rooms):
+        elif mark.value in MEASURED or (mark.value == "length" and rooms):
             _length(draft, mark, rooms)
 
 
@@ -217,26 +212,20 @@ def _total(draft: Draft, mark: Mark) -> None:
 
 
 def _length(draft: Draft, mark: Mark, rooms: Sequence[Named]) -> None:
-    access = draft.fields.setdefault("accessibility", {})
-    what = "corridors" if any(r.type in HALLS for r in rooms) else mark.value
-    _within_bounds(draft, mark, what, "rooms" if what == "length" else "accessibility")
-    if what == "doors":
-        access["min_door"] = max(mark.number, NARROWEST_DOOR)
-        draft.cite(mark.first, mark.last, "accessibility.min_door")
-    elif what == "corridors":
-        access["min_corridor"] = max(mark.number, NARROWEST_CORRIDOR)
-        draft.cite(mark.first, mark.last, "accessibility.min_corridor")
-    for room in rooms if what == "length" else ():
-        room.min_width = mark.number
+    """Note a length. Refuses one that nothing of its kind has; "at least" less than the least is met by that."""
+    what = "corridors" if mark.value == "length" and any(r.type in HALLS for r in rooms) else mark.value
+    part = "shell" if what in SHELL else "accessibility" if what in MEASURED else "rooms"
+    known = (Shell.model_fields | Accessibility.model_fields)[MEASURED[what][0]].metadata if what in MEASURED else ()
+    low, high = (known[0].ge, known[1].le) if known else WIDTHS
+    if mark.number > high or (mark.number < low and mark.bound != "least"):
+        name = what.replace("_", " ") if known else "a room"
+        draft.refuse(f"{name} of {mark.number:g} m", f"ask for {low:g} to {high:g} m", [(mark.first, mark.last)], part)
+    for field in MEASURED.get(what, ()):
+        draft.cite(mark.first, mark.last, f"{part}.{field}")
+        draft.fields.setdefault(part, {}).update({field: max(mark.number, low)} | ({"stated": True} if what in SHELL else {}))
+    for room in () if known else rooms:
+        room.min_width = max(mark.number, low)
         draft.cite(mark.first, mark.last, f"rooms.{room.id}.min_width")
-
-
-def _within_bounds(draft: Draft, mark: Mark, what: str, field: str) -> None:
-    """Refuse a length that nothing of its kind has."""
-    low, high = BOUNDS[what]
-    if not low <= mark.number <= high:
-        name = "a room" if what == "length" else what
-        draft.refuse(f"{name} of {mark.number:g} m", f"ask for {low:g} to {high:g} m", [(mark.first, mark.last)], field)
 
 
 # the whole home
