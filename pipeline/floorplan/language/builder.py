@@ -278,7 +278,7 @@ def _whole(draft: Draft, state: Reading) -> None:
 def _levels(state: Reading) -> None:
     """Put zones, and what is spoken of as the rest, on their storey."""
     rooms = state.inventory.rooms
-    if (state.storeys or (1,))[0] > 1 and all(r.level for r in rooms):
+    if all(r.level for r in rooms):
         for room in rooms:  # "front room, kitchen, two bedrooms and a bathroom above": not all of the list
             room.level = None if room.type in GROUND else room.level
     for name, level in sorted(state.heights.items(), key=lambda h: h[0] == "*"):

@@ -186,8 +186,8 @@ class Clause:
         if one and before is not None and before.kind in LISTING:  # "a guest room with its own bath, away from ..."
             return self.subject
         door = e.value in {"door", "leads"} and self.says(e, "with") and not last.plural  # "a kitchen and a hall with a door to ..."
-        single = self.single and len(self.run) > 1 and not last.plural
-        alone = self.relative or (door and not self.verb) or single or not self.coordinate()  # commas part statements
+        new = last.definite and not self._coordinated() and not any(x.definite for x in self.run[:-1])  # "a hall, and the bath must"
+        alone = new or self.relative or (door and not self.verb) or (self.single and not last.plural) or not self.coordinate()
         finite = any(self.says(x, "finite") for x in (*self.sentence[self.place(last) + 1 : k], e))
         verbal = self.verb or e.value in {"leads", "away", "apart", "wall"} or finite
         if alone or not (verbal or e.value == "door"):

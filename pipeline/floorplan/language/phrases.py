@@ -14,6 +14,7 @@ ROLES = {"primary", "guest", "child", "shared", "elder", "staff", "carer", "ensu
 ENDS = {"comma", "join", "clf", "stop", "open", "close", "slash"}
 MOST_INDEX = 12
 LONGEST = 150  # marks of a sentence; a longer one is read in parts, cut at commas
+LISTED = {*HEADS, *LEADING, "amount", "comma", "join"}  # what a list of rooms alone consists of
 SHORT = 48  # characters: a prompt of such lines is a list
 
 
@@ -40,13 +41,12 @@ def sentences(marks: Sequence[Mark], words: Words) -> list[list[Mark]]:
     by_sentence: list[list[Mark]] = [[]]
     for k, mark in enumerate(marks):
         here = by_sentence[-1]
-        line = _line(marks, k, words) if mark.kind == "line" else ""
-        if line == "comma":
-            here.append(replace(mark, kind="comma", text=","))
-        elif line == "stop" or mark.kind == "stop" or (mark.kind == "comma" and len(here) > LONGEST):
+        kind = _line(marks, k, words) if mark.kind == "line" else mark.kind
+        kind = "comma" if mark.text == ";" and all(m.kind in LISTED for m in here) else kind  # "bedroom; bedroom; bath"
+        if kind == "stop" or (mark.kind == "comma" and len(here) > LONGEST):
             by_sentence.append([])
-        elif mark.kind != "line":
-            here.append(mark)
+        elif kind:
+            here.append(mark if kind == mark.kind else replace(mark, kind=kind, text=","))
     return [e for e in (_elements(s, words.lexicon) for s in by_sentence if s) if e]
 
 

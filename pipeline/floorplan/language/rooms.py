@@ -18,7 +18,7 @@ ZONES = {"bedroom": ("bedroom",), "living": ("living_room", "dining_room", "fami
 FRONT = {"door", "near", "open", "wall", "from", "ensuite", "cmp", "via"}  # relations to one room, behind which a list begins anew
 GROUPS = {"door", "leads", "open", "near", "wall", "ban", "avoid", "away", "no_through"}  # may be said of all rooms
 ALONE = {"living_room", "kitchen", "dining_room", "hallway", "entry", "utility", "garage", "staircase", "family_room", "studio_room"}
-PLURAL_NAMES = {"staircase", "closet", "storage"}  # their plural often means one
+PLURAL_NAMES = {"staircase", "closet", "storage", "hallway"}  # their plural often means one
 THEIRS = {"child", "guest", "elder", "staff", "carer"}  # who has a room of another name than just a bedroom
 
 
