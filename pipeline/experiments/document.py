@@ -14,13 +14,16 @@ from pipeline.execution import cores, map_jobs
 from pipeline.experiments import lineup
 from pipeline.experiments.dataset import reject_rows, shipped_rows
 from pipeline.experiments.settings import MetricsSettings
+from pipeline.export import ExportFolder, export_home
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
-from pipeline.manifest import write_bytes, write_with
+from pipeline.manifest import digest, write_bytes, write_with
 from pipeline.report import baselines, calibration, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
 from pipeline.report.realism import realism_section
+from pipeline.report.viewer import viewer_page
+from pipeline.shards import read_header
 from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 
 SHOWN = 24  # top views on the page
@@ -40,7 +43,7 @@ def write_report(root: Path, figures: Mapping[str, Any], factory: Factory, setti
         else []
     )
     chapters = [
-        Section("Views", [missing] if missing else [], pictures=gallery, wide=True),
+        Section("Views", [missing] if missing else [], pictures=[*in_3d(root, folder, homes), *gallery], wide=True),
         sections.dataset_section(
             figures["dataset"], _json(root / "metrics" / "sampling.json") | _json(root / "metrics" / "timing.json"), views
         ),
@@ -95,6 +98,21 @@ def _calibration(folder: Path, comparison: Mapping[str, Any]) -> Section | None:
 def dataset_homes(root: Path) -> list[Home]:
     """Return the homes of data/shards."""
     return homes_of({table.name: shipped_rows(root / "data" / "shards", table) for table in (SCENES, ROOMS, OPENINGS, OBJECTS)})
+
+
+def in_3d(root: Path, folder: Path, homes: Sequence[Home]) -> list[Picture]:
+    """Write the first home as `sfgen export --to glb` does, and a page that shows it; return its view from above, which opens that."""
+    dataset = root / "data" / "shards"
+    header = read_header(dataset)
+    stages = {row["scene_id"]: dataset / row["usd"] for row in shipped_rows(dataset, SCENES) if row["usd"]}
+    exported = ExportFolder(folder / "glb", "glb", digest(header.to_json()), header.licence)
+    home = next((home for home in homes if home.scene_id in stages), None)
+    if not home:
+        return []
+    glb = export_home(exported, stages[home.scene_id], home.scene_id)
+    page = f"{home.scene_id}.html"
+    write_bytes(folder / page, viewer_page(home.scene_id, glb.read_bytes()).encode())
+    return [Picture(_copy_preview(root, folder, home), f"{home.scene_id} in 3D: click, then turn it with the mouse", page)]
 
 
 def path_traced(root: Path, folder: Path, homes: Sequence[Home], seed: int, settings: MetricsSettings) -> tuple[list[Picture], str]:

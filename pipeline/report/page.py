@@ -28,10 +28,11 @@ class TableView:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """An image file, its path relative to the page, and a caption."""
+    """An image file, its path relative to the page, and a caption; a click opens it, or the page `opens`."""
 
     path: str
     caption: str
+    opens: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,7 @@ def _section(section: Section) -> str:
     parts += [_table(table) for table in section.tables]
     if section.pictures:
         figures = "".join(
-            f'<figure><a href="{escape(p.path)}"><img src="{escape(p.path)}" alt="{escape(p.caption)}" loading="lazy"></a>'
+            f'<figure><a href="{escape(p.opens or p.path)}"><img src="{escape(p.path)}" alt="{escape(p.caption)}" loading="lazy"></a>'
             f"<figcaption>{escape(p.caption)}</figcaption></figure>"
             for p in section.pictures
         )

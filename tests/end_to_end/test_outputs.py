@@ -1,5 +1,6 @@
 """What the whole factory leaves behind: tables, a dataset, stages that simulate, every metric, a report."""
 
+import base64
 import json
 import math
 import re
@@ -144,6 +145,16 @@ def test_the_reports_links_exist(root):
     for link in links:
         assert "://" not in link
         assert (root / "report" / link).is_file(), link
+
+
+def test_the_report_shows_a_home_as_it_is_exported(root, tmp_path):
+    (glb,) = (root / "report" / "glb" / "homes").glob("*.glb")
+    from stages.export import main
+
+    main(root, dataset=root / "data" / "shards", to="glb", out=tmp_path, homes=[glb.stem])
+    assert glb.read_bytes() == (tmp_path / "homes" / glb.name).read_bytes()
+    assert base64.b64encode(glb.read_bytes()).decode() in (root / "report" / f"{glb.stem}.html").read_text()
+    assert f'href="{glb.stem}.html"' in (root / "report" / "index.html").read_text()
 
 
 def test_plots_are_tables(root):

@@ -1,5 +1,9 @@
+import base64
+import re
+
 from pipeline.report.page import Picture, Section, TableView, render
 from pipeline.report.plots import Curve, bars, lines
+from pipeline.report.viewer import viewer_page
 
 PNG = b"\x89PNG\r\n"
 
@@ -12,6 +16,19 @@ def test_page_shows_everything_and_escapes_it():
     assert "<td>&lt;2&gt;</td>" in page
     assert 'src="views/a.png"' in page
     assert "http" not in page
+
+
+def test_a_picture_opens_a_page():
+    page = render("Title", "lead", [Section("Homes", pictures=[Picture("a.png", "a", "a.html")])])
+    assert '<a href="a.html"><img src="a.png"' in page
+
+
+def test_the_viewer_holds_the_file_and_fetches_nothing():
+    glb = bytes(range(256))
+    page = viewer_page("s0_00000003", glb)
+    assert base64.b64decode(re.search('base64_data="([^"]*)"', page)[1]) == glb
+    assert "<title>s0_00000003</title>" in page
+    assert not re.search(r"""(src|href)=["']?(https?:)?//""", page)
 
 
 def test_plots_are_pictures_and_repeat_byte_for_byte():
