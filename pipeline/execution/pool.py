@@ -201,9 +201,7 @@ def _travels(error: Exception) -> bool:
 
 
 def _leave(*_signal: object) -> NoReturn:
-    signal.signal(
-        signal.SIGTERM, signal.SIG_IGN
-    )  # told twice, as by a scheduler that ends all processes of a job, it would print a traceback
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # told twice, it would print a traceback
     sys.exit(0)
 
 
