@@ -46,7 +46,7 @@ check: $(DEV) ## format, lint, types, imports
 deps: $(DEV) ## write the code that each stage runs into dvc.yaml
 	python .ci/deps.py --write
 
-bench: $(READY) ## every benchmark in benchmarks/
+bench: $(DEV) ## every benchmark in benchmarks/
 	failed=; for file in benchmarks/*.py; do echo "== $$file"; PYTHONPATH=. python $$file || failed="$$failed $$file"; done; test -z "$$failed" || { echo "failed:$$failed"; exit 1; }
 
 weights: $(READY) ## train the released weights further, into weights/: an hour; a killed run goes on

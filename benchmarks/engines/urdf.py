@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
-from benchmarks.formats import Body, Joint, Reading, deviations, from_usd
+from tests.export.readings import Body, Joint, Reading, deviations, from_usd
 
 
 def from_sapien(home: Path) -> Reading:
