@@ -29,7 +29,10 @@ def main() -> None:
         show("Franka kitchen", [Path(found.submodule_search_locations[0]) / SCENE])
     else:
         print(f"Franka kitchen: {PACKAGE} is not installed")
-    show(f"{COUNT} homes, in the mean", sorted((dataset / "usd").glob("*/*.mujoco.usda"))[:COUNT])
+    homes = sorted((dataset / "usd").glob("*/*.mujoco.usda"))[:COUNT]
+    if not homes:
+        sys.exit(f"{dataset} has no homes: name a dataset")
+    show(f"{len(homes)} homes, in the mean", homes)
 
 
 def show(name: str, scenes: list[Path]) -> None:

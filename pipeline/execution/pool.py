@@ -179,7 +179,7 @@ def _serve(pipe: Connection, step: Callable[[J], R], scratch: str) -> None:
         while True:
             pipe.send(_answer(step, pipe.recv()))
     except (EOFError, OSError):
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # it is ending by itself: to be told so once more would print a traceback
+        _leave()
 
 
 def _answer(step: Callable[[J], R], job: J) -> tuple[str, Any]:
@@ -201,7 +201,7 @@ def _travels(error: Exception) -> bool:
 
 
 def _leave(*_signal: object) -> NoReturn:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # told twice, it would print a traceback
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # to be told so while it is ending would print a traceback
     sys.exit(0)
 
 

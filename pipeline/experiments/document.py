@@ -14,10 +14,10 @@ from pipeline.execution import cores, map_jobs
 from pipeline.experiments import lineup
 from pipeline.experiments.dataset import reject_rows, shipped_rows
 from pipeline.experiments.settings import MetricsSettings
-from pipeline.export import ExportFolder, export_home
+from pipeline.export import ExportFolder, export_home, home_stages
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
-from pipeline.manifest import digest, write_bytes, write_with
+from pipeline.manifest import write_bytes, write_with
 from pipeline.report import baselines, calibration, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
@@ -35,6 +35,7 @@ def write_report(root: Path, figures: Mapping[str, Any], factory: Factory, setti
     shutil.rmtree(folder, ignore_errors=True)
     homes = dataset_homes(root)
     gallery, missing = path_traced(root, folder, homes, factory.seed, settings)
+    model, no_model = in_3d(root, folder, homes)
     views = [Picture(_copy_preview(root, folder, home), f"{home.scene_id}: {home.prompt}") for home in homes[:SHOWN]]
     rates = {name: _plot(folder, name, curves, **labels) for name, (curves, labels) in _plots(figures).items()}
     loss = (
@@ -43,7 +44,7 @@ def write_report(root: Path, figures: Mapping[str, Any], factory: Factory, setti
         else []
     )
     chapters = [
-        Section("Views", [missing] if missing else [], pictures=[*in_3d(root, folder, homes), *gallery], wide=True),
+        Section("Views", [why for why in (no_model, missing) if why], pictures=[*model, *gallery], wide=True),
         sections.dataset_section(
             figures["dataset"], _json(root / "metrics" / "sampling.json") | _json(root / "metrics" / "timing.json"), views
         ),
@@ -100,19 +101,21 @@ def dataset_homes(root: Path) -> list[Home]:
     return homes_of({table.name: shipped_rows(root / "data" / "shards", table) for table in (SCENES, ROOMS, OPENINGS, OBJECTS)})
 
 
-def in_3d(root: Path, folder: Path, homes: Sequence[Home]) -> list[Picture]:
-    """Write the first home as `sfgen export --to glb` does, and a page that shows it; return its view from above, which opens that."""
+def in_3d(root: Path, folder: Path, homes: Sequence[Home]) -> tuple[list[Picture], str]:
+    """Write the first home as `sfgen export --to glb` does, and a page that shows it; return its view from above, which opens that, or why not."""
     dataset = root / "data" / "shards"
     header = read_header(dataset)
-    stages = {row["scene_id"]: dataset / row["usd"] for row in shipped_rows(dataset, SCENES) if row["usd"]}
-    exported = ExportFolder(folder / "glb", "glb", digest(header.to_json()), header.licence)
+    stages = home_stages(dataset, header)
     home = next((home for home in homes if home.scene_id in stages), None)
     if not home:
-        return []
-    glb = export_home(exported, stages[home.scene_id], home.scene_id)
+        return [], ""
+    glb = export_home(ExportFolder.of_dataset(folder / "glb", "glb", header), stages[home.scene_id], home.scene_id)
     page = f"{home.scene_id}.html"
-    write_bytes(folder / page, viewer_page(home.scene_id, glb.read_bytes()).encode())
-    return [Picture(_copy_preview(root, folder, home), f"{home.scene_id} in 3D: click, then turn it with the mouse", page)]
+    try:
+        write_bytes(folder / page, viewer_page(home.scene_id, glb.read_bytes()).encode())
+    except SfgenError as error:
+        return [], str(error)
+    return [Picture(_copy_preview(root, folder, home), f"{home.scene_id} in 3D: click, then turn it with the mouse", page)], ""
 
 
 def path_traced(root: Path, folder: Path, homes: Sequence[Home], seed: int, settings: MetricsSettings) -> tuple[list[Picture], str]:

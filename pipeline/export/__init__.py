@@ -3,6 +3,6 @@
 `stage` reads what lies on disk through USD's schemas into the records of `model`; `mjcf`, `urdf` and `glb` write those.
 """
 
-from pipeline.export.folder import FORMATS, ExportFolder, export_home
+from pipeline.export.folder import FORMATS, ExportFolder, export_home, home_stages
 
-__all__ = ["FORMATS", "ExportFolder", "export_home"]
+__all__ = ["FORMATS", "ExportFolder", "export_home", "home_stages"]

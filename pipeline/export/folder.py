@@ -14,12 +14,26 @@ from pipeline.export.mjcf import model_xml, scene_xml
 from pipeline.export.model import Model, Scene
 from pipeline.export.stage import read_asset, read_home
 from pipeline.export.urdf import building_urdf, model_srdf, model_urdf, placements
-from pipeline.manifest import write_bytes, write_json
+from pipeline.manifest import digest, write_bytes, write_json
+from pipeline.shards import TABLES, Header, shard_name
+from pipeline.shards.layout import commit_path, table_path
+from pipeline.tables import read
 
 FORMATS = ("mjcf", "urdf", "glb")
 HEADER = "export.json"
 TEMPORARY = ".tmp-"  # how names begin of what is being written, here and in pipeline/manifest.py
 REMEMBERED = 512  # models of the library that are kept in memory
+
+
+def home_stages(dataset: Path, header: Header) -> dict[str, Path]:
+    """Return the USD stage of each home in the committed shards of a dataset, by the home's id."""
+    return {
+        row["scene_id"]: dataset / row["usd"]
+        for number in range(header.shards)
+        if (dataset / commit_path(shard_name(number))).is_file()
+        for row in read(dataset / table_path("scenes", number), TABLES["scenes"])
+        if row["usd"]
+    }
 
 
 class ExportFolder:
@@ -34,6 +48,11 @@ class ExportFolder:
         for left in path.glob(f"*/{TEMPORARY}*"):  # by a run that was killed
             shutil.rmtree(left) if left.is_dir() else left.unlink()
         self._asset = lru_cache(REMEMBERED)(read_asset)
+
+    @classmethod
+    def of_dataset(cls, path: Path, form: str, header: Header) -> "ExportFolder":
+        """Return the folder `path` for homes of the dataset with this header. Raises UsageError where it holds something else."""
+        return cls(path, form, digest(header.to_json()), header.licence)
 
     def home_file(self, scene_id: str) -> Path:
         """Return the file that a simulator or viewer opens."""

@@ -4,7 +4,10 @@ import base64
 import io
 import zipfile
 
+import trimesh
 from trimesh import resources
+
+from pipeline.errors import ContentError
 
 FOV, NEAR, FAR = 40, 0.05, 500.0  # [degrees], [m], [m]
 AMBIENT, HEADLIGHT = 0.5, 0.7  # shares of light: from everywhere, from the eye
@@ -22,10 +25,13 @@ TITLE = "trimesh: threejs viewer"
 
 
 def viewer_page(title: str, glb: bytes) -> str:
-    """Return HTML that holds the GLB and shows it without its ceilings, to be turned with the mouse; it fetches nothing."""
+    """Return HTML that holds the GLB and shows it without its ceilings, to be turned with the mouse; it fetches nothing.
+
+    Raises ContentError where the installed trimesh has another viewer than the one that this changes.
+    """
     page = zipfile.ZipFile(io.BytesIO(resources.get_bytes("templates/viewer.zip"))).read("viewer.html.template").decode()
     for old, new in {**REPLACED, TITLE: title, "$B64GLTF": base64.b64encode(glb).decode()}.items():
         if page.count(old) != 1:
-            raise AssertionError(f"trimesh's viewer has another text than {old}")
+            raise ContentError(f"the viewer of trimesh {trimesh.__version__} has another text than {old!r}", "pip install trimesh==5.2.0")
         page = page.replace(old, new)
     return page

@@ -1,6 +1,10 @@
 import base64
 import re
 
+import pytest
+
+from pipeline.errors import ContentError
+from pipeline.report import viewer
 from pipeline.report.page import Picture, Section, TableView, render
 from pipeline.report.plots import Curve, bars, lines
 from pipeline.report.viewer import viewer_page
@@ -29,6 +33,12 @@ def test_the_viewer_holds_the_file_and_fetches_nothing():
     assert base64.b64decode(re.search('base64_data="([^"]*)"', page)[1]) == glb
     assert "<title>s0_00000003</title>" in page
     assert not re.search(r"""(src|href)=["']?(https?:)?//""", page)
+
+
+def test_another_viewer_is_named(monkeypatch):
+    monkeypatch.setitem(viewer.REPLACED, "what no viewer has", "")
+    with pytest.raises(ContentError, match=r"trimesh .* has another text than 'what no viewer has'; pip install"):
+        viewer_page("s0_00000003", b"")
 
 
 def test_plots_are_pictures_and_repeat_byte_for_byte():
