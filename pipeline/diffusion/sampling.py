@@ -95,8 +95,9 @@ class Sampler:
                 classes = np.full((len(part), slots), len(self.header.norm.classes))
                 for row, i in enumerate(part):
                     classes[row, : len(inventories[i])] = inventories[i]
-                batch = conditioning.first(tokens), torch.from_numpy(classes), [keys[i] for i in part]
-                for i, x0, mine in zip(part, self._batch(*batch), batch[1], strict=True):
+                labels = torch.from_numpy(classes).to(self.net.codec.mean.device)
+                clean = self._batch(conditioning.first(tokens), labels, [keys[i] for i in part])
+                for i, x0, mine in zip(part, clean, labels, strict=True):
                     proposals[i] = self.net.codec.proposals(x0, mine, rooms[i])
         return proposals
 
@@ -110,9 +111,9 @@ class Sampler:
                 yield *shape, alike[start : start + self.settings.batch]
 
     def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[Key]) -> Tensor:
-        """Sample one padded batch: x0 (batch, slots, 40) of objects of `classes` (batch, slots)."""
-        device = self.net.codec.mean.device
-        rooms, classes = rooms.to(device), classes.to(device)
+        """Sample one padded batch: x0 (batch, slots, 40) of objects of `classes` (batch, slots), on their device."""
+        device = classes.device
+        rooms = rooms.to(device)
         code, ones = self.net.floor_code(rooms, classes), torch.ones(len(keys), device=device)
         guide = Guide(rooms, classes, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
 
@@ -130,7 +131,7 @@ class Sampler:
             return torch.from_numpy(np.stack([rng.standard_normal(shape, np.float32) for rng in rngs])).to(device)
 
         count = self.settings.evaluations
-        return denoise(expect, steer, noise, levels(count) if count else paper_levels(), self.settings.eta).cpu()
+        return denoise(expect, steer, noise, levels(count) if count else paper_levels(), self.settings.eta)
 
     def _layouts(self, rooms: Sequence[RoomContext]) -> list[int]:
         """Return the indices of the rooms' types."""

@@ -179,21 +179,29 @@ class SetTransformer(nn.Module):
         front = torch.stack([x[..., 7], -x[..., 6]], -1)
         slots = Seen((x[..., :2], x[..., YAW], front), torch.stack([spread * self.codec.reach, spread], -1), classes >= self.codec.classes)
         tokens = self.slot(torch.cat([invariants(x[..., :2], x[..., YAW]), x[..., 2:6], x[..., YAW.stop :]], -1)) + self.kind(classes)
-        guess, answer, answers = alpha * x[..., Geometry], None, []
+        guess, answer, answers = self.first_guess(x, alpha), None, []
         per_pass = 2 * self.settings.layers + 1
         for number, look in enumerate(self.passes):
             keys = code.keys[number * per_pass : (number + 1) * per_pass]
             tokens, more = look(tokens, slots, self.codec.metric(guess, classes), rooms, keys, condition)
             answer = more if answer is None else answer.detach() + more
             answers.append(answer)
-            guess = clamp_channels((alpha * x[..., Geometry] - sigma * answer[..., Geometry]).detach())
+            guess = clamp_channels(self.clean(x[..., Geometry], answer[..., Geometry], alpha, sigma).detach())
         return tuple(answers)
 
     def expected(self, x: Tensor, classes: Tensor, level: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> Tensor:
         """Return the expected clean channels x0 (B, N, 40), within what data can be: in rooms unlike any in training a step could else run away."""
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
         answer: Tensor = self(x, classes, level, rooms, code)[-1]
-        return clamp_channels(alpha * x - sigma * answer)
+        return clamp_channels(self.clean(x, answer, alpha, sigma))
+
+    def first_guess(self, x: Tensor, alpha: Tensor) -> Tensor:
+        """Return the boxes (B, N, 8) that the first pass sees: as the noise lets one guess them."""
+        return alpha * x[..., Geometry]
+
+    def clean(self, x: Tensor, answer: Tensor, alpha: Tensor, sigma: Tensor) -> Tensor:
+        """Return the clean channels that an answer v stands for."""
+        return alpha * x - sigma * answer
 
 
 def by_room(layer: nn.Module, x: Tensor) -> Tensor:
