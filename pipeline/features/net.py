@@ -19,13 +19,13 @@ from pipeline.manifest import digest
 from pipeline.tensors import load_state, load_tensors, save_tensors
 
 FEATURES = 32
-CHANNELS = (16, 32, 64, 96)
+CHANNELS = (24, 48, 96, 128)
 BATCH = 256
 REMEDY = "make them with `python -m stages.features`"
 
 
 class ViewNet(nn.Module):
-    """Four strided convolutions, mean and maximum over the plane, and a line to the features; three heads for training.
+    """Four pairs of convolutions, the first of each strided, mean and maximum over the plane, and a line to the features; three heads for training.
 
     `centre` and `spread` (32,) are the features' mean and standard deviation over training rooms: what `embed` gives is standardised.
     """
@@ -40,6 +40,7 @@ class ViewNet(nn.Module):
         for k, width in enumerate(CHANNELS):
             kernel = 5 if k == 0 else 3
             layers += [nn.Conv2d(before, width, kernel, 2, kernel // 2, bias=False), nn.BatchNorm2d(width), nn.ReLU()]
+            layers += [nn.Conv2d(width, width, 3, 1, 1, bias=False), nn.BatchNorm2d(width), nn.ReLU()]
             before = width
         self.body = nn.Sequential(*layers)
         self.line = nn.Linear(2 * before, FEATURES)

@@ -6,56 +6,61 @@ from typing import NamedTuple
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from torch import Tensor
 from torch.nn.functional import cross_entropy, mse_loss
 
 from pipeline.features.net import ViewNet
 
-BATCH = 64
+BATCH = 128
 RATE = 3e-3
+EVERY = 500  # steps that are reported together
 
 
-class Epoch(NamedTuple):
-    """Mean loss over an epoch's batches, and the shares of rooms and states that were told right."""
+class Progress(NamedTuple):
+    """Steps done; over the last of them the mean loss, and the shares of rooms and states that were told right."""
 
+    done: int
     loss: float
     rooms: float
     states: float
 
 
-def train(
-    rng: np.random.Generator,
-    net: ViewNet,
-    views: NDArray[np.uint8],
-    rooms: NDArray[np.intp],
-    states: NDArray[np.intp],
-    layout: NDArray[np.float64],
-    epochs: int,
-) -> Iterator[Epoch]:
-    """Train on views (N, 64, 64, 3) with their kinds of room, states (N,) and layout features (N, L); yield after each epoch."""
-    steps = epochs * (len(views) // BATCH)
-    optimiser = torch.optim.AdamW(net.parameters(), RATE, weight_decay=1e-2)
+class Examples(NamedTuple):
+    """Plan views (N, 64, 64, 3) in 8 bits, their kinds of room and states (N,), their layout features (N, L)."""
+
+    views: NDArray[np.uint8]
+    rooms: NDArray[np.intp]
+    states: NDArray[np.intp]
+    layout: NDArray[np.float64]
+
+
+def train(rng: np.random.Generator, net: ViewNet, examples: Examples, steps: int, device: torch.device) -> Iterator[Progress]:
+    """Train on `device`, yielding every EVERY steps and at the end. Half of a batch are intact rooms (state 0), half harmed ones."""
+    optimiser = torch.optim.AdamW(net.to(device).parameters(), RATE, weight_decay=1e-2)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, max(2, steps))
-    scaled = (layout - layout.mean(0)) / np.maximum(layout.std(0), 1e-3)
-    data = torch.from_numpy(views), torch.from_numpy(rooms), torch.from_numpy(states), torch.from_numpy(scaled).float()
-    for _ in range(epochs):
-        net.train()
-        total = np.zeros(3)
-        order = torch.from_numpy(rng.permutation(len(views)))
-        batches = [order[k : k + BATCH] for k in range(0, len(order) - BATCH + 1, BATCH)]
-        for batch in batches:
-            images = _augment(rng, data[0][batch])
-            room, state, features = net(images)
-            loss = cross_entropy(room, data[1][batch]) + 2 * cross_entropy(state, data[2][batch]) + 3 * mse_loss(features, data[3][batch])
-            optimiser.zero_grad()
-            loss.backward()
-            optimiser.step()
-            schedule.step()
-            right = [(logits.argmax(1) == data[1 + k][batch]).float().mean().item() for k, logits in enumerate((room, state))]
-            total += [loss.item(), *right]
-        yield Epoch(*(total / max(1, len(batches))).round(4).tolist())
+    scaled = (examples.layout - examples.layout.mean(0)) / np.maximum(examples.layout.std(0), 1e-3)
+    views, kinds, states = (torch.from_numpy(part).to(device) for part in examples[:3])
+    layout = torch.from_numpy(scaled).float().to(device)
+    halves = [np.flatnonzero(examples.states == 0), np.flatnonzero(examples.states > 0)]
+    net.train()
+    total, since = torch.zeros(3, device=device), 0
+    for step in range(steps):
+        drawn = np.concatenate([half[rng.integers(len(half), size=BATCH // 2)] for half in halves])
+        batch = torch.from_numpy(drawn).to(device)
+        room, state, features = net(_augment(rng, views[batch]))
+        loss = cross_entropy(room, kinds[batch]) + 2 * cross_entropy(state, states[batch]) + 3 * mse_loss(features, layout[batch])
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+        schedule.step()
+        right = [(logits.argmax(1) == truth[batch]).float().mean() for logits, truth in ((room, kinds), (state, states))]
+        total, since = total + torch.stack([loss.detach(), *right]), since + 1
+        if (step + 1) % EVERY == 0 or step + 1 == steps:
+            yield Progress(step + 1, *(round(v, 4) for v in (total / since).tolist()))
+            total, since = torch.zeros(3, device=device), 0
 
 
-def _augment(rng: np.random.Generator, views: torch.Tensor) -> torch.Tensor:
+def _augment(rng: np.random.Generator, views: Tensor) -> Tensor:
     """Turn a batch by some quarters and mirror it, or not: a room stays a room."""
     turned = torch.rot90(views, int(rng.integers(4)), (1, 2))
     return turned.flip(2) if rng.integers(2) else turned

@@ -11,7 +11,7 @@ from pipeline import taxonomy
 from pipeline.errors import ContentError
 from pipeline.features import inception
 from pipeline.features import net as nets
-from pipeline.features.training import train
+from pipeline.features.training import Examples, train
 from pipeline.metrics.perturbations import spoilt
 from pipeline.metrics.views import STATES, compare_views, features_once, views_of
 from tests.relations.making import bedrooms
@@ -52,15 +52,18 @@ def test_unfit_weights_are_refused(weights):
         nets.load(weights, SAID)
 
 
-def test_training_learns():
+def test_training_learns(monkeypatch):
     rng = np.random.default_rng(0)
     torch.manual_seed(0)
     rooms = bedrooms(rng, 128)
     views = np.concatenate([views_of(rooms), views_of([spoilt(rng, room) for room in rooms])])
     states = np.repeat([0, 1], len(rooms))
-    epochs = list(train(rng, nets.ViewNet(1, 2, 5), views, np.zeros(len(views), int), states, np.tile(states, (5, 1)).T, 3))
-    assert epochs[-1].loss < epochs[0].loss
-    assert epochs[-1].states > 0.7
+    examples = Examples(views, np.zeros(len(views), int), states, np.tile(states, (5, 1)).T.astype(float))
+    monkeypatch.setattr("pipeline.features.training.EVERY", 10)
+    said = list(train(rng, nets.ViewNet(1, 2, 5), examples, 25, torch.device("cpu")))
+    assert [part.done for part in said] == [10, 20, 25]
+    assert said[-1].loss < said[0].loss
+    assert said[-1].states > 0.7
 
 
 def test_the_released_net_sees_harm_and_nothing_where_there_is_none(root):
