@@ -11,7 +11,7 @@ from pipeline.diffusion.batch import Objects, RoomBatch
 from pipeline.diffusion.codec import YAW, Codec, Normalisation
 from pipeline.diffusion.loss import Draw, Loss
 from pipeline.diffusion.schedule import FIRST, LAST, alpha_sigma, levels
-from pipeline.diffusion.set_transformer import FloorCode, Geometry, Pass, SetTransformer
+from pipeline.diffusion.set_transformer import FloorCode, Pass, SetTransformer
 from pipeline.diffusion.settings import ModelSettings, TrainSettings
 
 LossOf = Callable[[SetTransformer, RoomBatch, Objects, Draw, TrainSettings], tuple[Loss, ...]]
@@ -19,7 +19,17 @@ STEP = (LAST - FIRST) / 11  # lambda between two of twelve evaluations
 HALF = 0.5  # share of the rooms of a step that are trained on what a sampler would hold
 
 
-class ExpectsClean(SetTransformer):
+class Forgetful(SetTransformer):
+    """Does not know what it expected before: the layout model without self-conditioning, which the other nets here have not either."""
+
+    def expected(
+        self, x: Tensor, classes: Tensor, level: Tensor, rooms: RoomBatch, code: FloorCode | None = None, before: Tensor | None = None
+    ) -> Tensor:
+        """Return the expected clean channels."""
+        return super().expected(x, classes, level, rooms, code)
+
+
+class ExpectsClean(Forgetful):
     """Answers with the clean channels themselves."""
 
     def clean(self, x: Tensor, answer: Tensor, alpha: Tensor, sigma: Tensor) -> Tensor:
@@ -27,30 +37,12 @@ class ExpectsClean(SetTransformer):
         return answer
 
 
-class ExpectsNoise(SetTransformer):
+class ExpectsNoise(Forgetful):
     """Answers with the noise."""
 
     def clean(self, x: Tensor, answer: Tensor, alpha: Tensor, sigma: Tensor) -> Tensor:
         """Return the clean channels that an answer stands for."""
         return (x - sigma * answer) / alpha
-
-
-class SelfConditioned(SetTransformer):
-    """Its first pass sees the room as the step before expected it (Chen et al. 2023), not as the noise lets one guess it."""
-
-    before: Tensor | None = None
-    code: FloorCode | None = None
-
-    def first_guess(self, x: Tensor, alpha: Tensor) -> Tensor:
-        """Return the boxes (B, N, 8) that the first pass sees."""
-        return super().first_guess(x, alpha) if self.before is None else self.before
-
-    def expected(self, x: Tensor, classes: Tensor, level: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> Tensor:
-        """Return the expected clean channels; the steps of one batch share their `code`, and remember."""
-        self.before = self.before if code is self.code else None
-        answer = super().expected(x, classes, level, rooms, code)
-        self.before, self.code = answer[..., Geometry], code
-        return answer
 
 
 class MaskedKinds(nn.Embedding):
@@ -75,7 +67,7 @@ class MaskedCodec(Codec):
         return super().metric(channels, classes if self.hidden is None else torch.where(self.hidden, self.classes, classes))
 
 
-class DiscreteChain(SetTransformer):
+class DiscreteChain(Forgetful):
     """Categories are a chain of their own beside the geometry, in which each of a told number of objects is masked until it is decided.
 
     As in MiDiffusion (Hu et al. 2024), with masks alone: at lambda an object is masked with the share of the way that is left. What is
@@ -160,21 +152,6 @@ def clean_as_v(net: SetTransformer, rooms: RoomBatch, objects: Objects, drawn: D
     """Return the errors of clean channels as v's, at most 25 times as much: an error of v is that of x0 over sigma."""
     sigma = alpha_sigma(drawn.level)[1].clamp_min(0.2)
     return tuple(Loss(*(term / sigma**2 for term in loss)) for loss in plain_loss(net, rooms, objects, drawn, settings))
-
-
-def self_conditioned(net: SetTransformer, rooms: RoomBatch, objects: Objects, drawn: Draw, settings: TrainSettings) -> tuple[Loss, ...]:
-    """Return the errors where half of the rooms have been looked at before."""
-    assert isinstance(net, SelfConditioned)
-    alpha, sigma = (v[:, None, None] for v in alpha_sigma(drawn.level))
-    x = alpha * objects.channels + sigma * drawn.noise
-    net.before = None
-    with torch.no_grad():
-        seen = SetTransformer.expected(net, x, objects.classes, drawn.level, rooms)[..., Geometry]
-    looked = (torch.arange(len(x), device=x.device) % 2 == 0)[:, None, None]
-    net.before = torch.where(looked, seen, alpha * x[..., Geometry])
-    losses = plain_loss(net, rooms, objects, drawn, settings)
-    net.before = None
-    return losses
 
 
 def unrolled(net: SetTransformer, rooms: RoomBatch, objects: Objects, drawn: Draw, settings: TrainSettings) -> tuple[Loss, ...]:

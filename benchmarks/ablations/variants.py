@@ -11,12 +11,11 @@ from benchmarks.ablations.nets import (
     DiscreteChain,
     ExpectsClean,
     ExpectsNoise,
+    Forgetful,
     LossOf,
-    SelfConditioned,
     clean_as_v,
     discrete,
     plain_loss,
-    self_conditioned,
     unrolled,
 )
 from pipeline.diffusion import loss as diffusion_loss
@@ -30,13 +29,17 @@ DrawOf = Callable[[torch.Generator, int, int], Draw]
 
 def evenly(rng: torch.Generator, batch: int, slots: int) -> Draw:
     """Draw levels that are even in lambda."""
-    return Draw(FIRST + (LAST - FIRST) * torch.rand(batch, generator=rng), torch.randn(batch, slots, CHANNELS, generator=rng))
+    return Draw(
+        FIRST + (LAST - FIRST) * torch.rand(batch, generator=rng),
+        torch.randn(batch, slots, CHANNELS, generator=rng),
+        torch.zeros(batch, dtype=torch.bool),
+    )
 
 
 def in_the_middle(rng: torch.Generator, batch: int, slots: int) -> Draw:
     """Draw levels where arrangement is decided alone: low noise, that of sizes and last centimetres, is rare."""
     level = (diffusion_loss.MIDDLE + diffusion_loss.BREADTH * torch.randn(batch, generator=rng)).clamp(FIRST, LAST)
-    return Draw(level, torch.randn(batch, slots, CHANNELS, generator=rng))
+    return Draw(level, torch.randn(batch, slots, CHANNELS, generator=rng), torch.zeros(batch, dtype=torch.bool))
 
 
 def low_noise(rng: torch.Generator, batch: int, slots: int) -> Draw:
@@ -57,7 +60,7 @@ class Variant:
     seed: int = 0
     model: Mapping[str, int] = field(default_factory=dict)
     train: Mapping[str, Any] = field(default_factory=dict)
-    net: type[SetTransformer] = SetTransformer
+    net: type[SetTransformer] = Forgetful
     loss: LossOf = plain_loss
     draw: DrawOf = diffusion_loss.draw
     true_share: bool = False  # room types as often as they are, instead of by the square root
@@ -86,7 +89,7 @@ VARIANTS: Mapping[str, Variant] = MappingProxyType(
         "middle": replace(PLAIN, says="levels of the middle alone", draw=in_the_middle),
         "lownoise": replace(PLAIN, says="half of the levels at low noise", draw=low_noise),
         "share": replace(PLAIN, says="room types in their true share", true_share=True),
-        "selfcond": replace(PLAIN, says="self-conditioning", net=SelfConditioned, loss=self_conditioned),
+        "selfcond": replace(PLAIN, says="self-conditioning", net=SetTransformer, loss=diffusion_loss.denoising_loss),
         "unrolled": replace(PLAIN, says="trained on what the sampler holds", loss=unrolled),
         "discrete": replace(PLAIN, says="classes as a discrete chain, the number told", net=DiscreteChain, loss=discrete),
         "adamw": replace(PLAIN, says="AdamW, rate .001", train={"optimiser": "adamw", "learning_rate": 1e-3}),

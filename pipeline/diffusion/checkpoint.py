@@ -17,7 +17,7 @@ from pipeline.manifest import canonical
 from pipeline.params import build
 from pipeline.tensors import load_state, load_tensors, save_tensors
 
-FORMAT = "sfgen-denoiser-4"
+FORMAT = "sfgen-denoiser-5"
 REMEDY = "run `make run`, or `dvc repro train`, which makes it"
 
 

@@ -16,13 +16,15 @@ from pipeline.diffusion.settings import TrainSettings
 MOST_SHIFT = 0.1  # largest change of a clean channel that the constraint term may ask for
 MIDDLE, BREADTH = 0.5, 2.5  # mean and deviation of the levels at which rooms take shape
 UNIFORM = 0.5  # share of the levels that is drawn evenly from all that a sampler meets
+SEEN = 0.5  # share of the rooms that have been looked at before, as all have but at a sampler's first step
 
 
 class Draw(NamedTuple):
-    """What one step draws: levels lambda (B,), noise (B, N, 40)."""
+    """What one step draws: levels lambda (B,), noise (B, N, 40), and which rooms (B,) have been looked at before."""
 
     level: Tensor
     noise: Tensor
+    seen: Tensor
 
 
 class Loss(NamedTuple):
@@ -37,7 +39,7 @@ def draw(rng: torch.Generator, batch: int, slots: int) -> Draw:
     even = FIRST + (LAST - FIRST) * torch.rand(batch, generator=rng)
     middle = (MIDDLE + BREADTH * torch.randn(batch, generator=rng)).clamp(FIRST, LAST)
     level = torch.where(torch.rand(batch, generator=rng) < UNIFORM, even, middle)
-    return Draw(level, torch.randn(batch, slots, CHANNELS, generator=rng))
+    return Draw(level, torch.randn(batch, slots, CHANNELS, generator=rng), torch.rand(batch, generator=rng) < SEEN)
 
 
 def constraint_descent(x0: Tensor, classes: Tensor, codec: Codec, rooms: RoomBatch, sweeps: Tensor) -> Tensor:
@@ -63,7 +65,7 @@ def denoising_loss(net: SetTransformer, rooms: RoomBatch, objects: Objects, draw
     alpha, sigma = (v[:, None, None] for v in alpha_sigma(drawn.level))
     occupied = (classes < codec.classes)[..., None]
     xt = alpha * objects.channels + sigma * drawn.noise
-    answers = net(xt, classes, drawn.level, rooms)
+    answers = net(xt, classes, drawn.level, rooms, before=expected_before(net, xt, objects, rooms, drawn))
     noise = drawn.noise
     near = torch.nonzero(drawn.level > lambda_of(settings.constraint_below))[:, 0]
     if settings.constraint and len(near):
@@ -80,6 +82,16 @@ def denoising_loss(net: SetTransformer, rooms: RoomBatch, objects: Objects, draw
         error = (target - answer) ** 2 * occupied
         terms.append(Loss(error[..., : YAW.stop].mean(-1).sum(1) / count, error[..., YAW.stop :].mean(-1).sum(1) / count))
     return tuple(terms)
+
+
+@torch.no_grad()
+def expected_before(net: SetTransformer, xt: Tensor, objects: Objects, rooms: RoomBatch, drawn: Draw) -> Tensor:
+    """Return the boxes (B, N, 8) that the first pass is shown: of rooms that were seen before what the net then expected, of others what xt says."""
+    before = alpha_sigma(drawn.level)[0][:, None, None] * xt[..., : YAW.stop]
+    rows = torch.nonzero(drawn.seen)[:, 0]
+    if len(rows):
+        before[rows] = net.expected(xt[rows], objects.classes[rows], drawn.level[rows], rooms.rows(rows))[..., : YAW.stop]
+    return before
 
 
 def _step_variance(level: Tensor) -> Tensor:

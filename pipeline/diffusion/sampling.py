@@ -117,9 +117,13 @@ class Sampler:
         code, ones = self.net.floor_code(rooms, classes), torch.ones(len(keys), device=device)
         guide = Guide(rooms, classes, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
 
+        before: Tensor | None = None
+
         def expect(x: Tensor, level: float) -> Tensor:
+            nonlocal before
             with torch.inference_mode():
-                return self.net.expected(x, classes, level * ones, rooms, code)
+                before = self.net.expected(x, classes, level * ones, rooms, code, before)
+            return before
 
         def steer(x0: Tensor, level: float) -> Tensor:
             return guide.steer(self.net.codec, x0, level)

@@ -4,9 +4,9 @@ It turns with the room. Inputs are lengths and angles between directions of the 
 and yaws are answered as sums of directions that the room and its objects offer. So a rule that is learnt at one wall holds
 at all four, and the world's axes mean nothing (mirror images are left to the augmentation).
 
-It looks twice. The first pass sees the boxes where the noise lets one guess them (alpha x_t, "somewhere in the middle" at
-high noise) and answers where they belong; the second sees the room as the first has arranged it, chairs beside tables and
-backs at walls, and corrects that. Both answers are trained. No slot embedding, so a permutation of the objects permutes
+It looks twice. The first pass sees the boxes where the step before expected them (self-conditioning, Chen et al. 2023), or at the first step
+where the noise lets one guess them (alpha x_t, "somewhere in the middle"), and answers where they belong; the second sees the room as the
+first has arranged it, chairs beside tables and backs at walls, and corrects that. Both answers are trained. No slot embedding, so a permutation of the objects permutes
 the answer.
 """
 
@@ -170,8 +170,19 @@ class SetTransformer(nn.Module):
         parts = self.settings.passes * (2 * self.settings.layers + 1)
         return FloorCode(split_heads(self.floor_keys(tokens), parts, self.settings.heads), room)
 
-    def forward(self, x: Tensor, classes: Tensor, level: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> tuple[Tensor, ...]:
-        """Return what each pass answers (B, N, 40): v = alpha eps - sigma x0, of slots x at levels (B,), the last one best."""
+    def forward(
+        self,
+        x: Tensor,
+        classes: Tensor,
+        level: Tensor,
+        rooms: RoomBatch,
+        code: FloorCode | None = None,
+        before: Tensor | None = None,
+    ) -> tuple[Tensor, ...]:
+        """Return what each pass answers (B, N, 40): v = alpha eps - sigma x0, of slots x at levels (B,), the last one best.
+
+        `before` (B, N, >= 8): the clean channels that were expected before, at a level of more noise or at this one.
+        """
         code = code or self.floor_code(rooms, classes)
         condition = nn.functional.silu(by_room(self.level, level_features(level)) + code.room)
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
@@ -179,7 +190,7 @@ class SetTransformer(nn.Module):
         front = torch.stack([x[..., 7], -x[..., 6]], -1)
         slots = Seen((x[..., :2], x[..., YAW], front), torch.stack([spread * self.codec.reach, spread], -1), classes >= self.codec.classes)
         tokens = self.slot(torch.cat([invariants(x[..., :2], x[..., YAW]), x[..., 2:6], x[..., YAW.stop :]], -1)) + self.kind(classes)
-        guess, answer, answers = self.first_guess(x, alpha), None, []
+        guess, answer, answers = (alpha * x if before is None else before)[..., Geometry], None, []
         per_pass = 2 * self.settings.layers + 1
         for number, look in enumerate(self.passes):
             keys = code.keys[number * per_pass : (number + 1) * per_pass]
@@ -189,15 +200,19 @@ class SetTransformer(nn.Module):
             guess = clamp_channels(self.clean(x[..., Geometry], answer[..., Geometry], alpha, sigma).detach())
         return tuple(answers)
 
-    def expected(self, x: Tensor, classes: Tensor, level: Tensor, rooms: RoomBatch, code: FloorCode | None = None) -> Tensor:
+    def expected(
+        self,
+        x: Tensor,
+        classes: Tensor,
+        level: Tensor,
+        rooms: RoomBatch,
+        code: FloorCode | None = None,
+        before: Tensor | None = None,
+    ) -> Tensor:
         """Return the expected clean channels x0 (B, N, 40), within what data can be: in rooms unlike any in training a step could else run away."""
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
-        answer: Tensor = self(x, classes, level, rooms, code)[-1]
+        answer: Tensor = self(x, classes, level, rooms, code, before)[-1]
         return clamp_channels(self.clean(x, answer, alpha, sigma))
-
-    def first_guess(self, x: Tensor, alpha: Tensor) -> Tensor:
-        """Return the boxes (B, N, 8) that the first pass sees: as the noise lets one guess them."""
-        return alpha * x[..., Geometry]
 
     def clean(self, x: Tensor, answer: Tensor, alpha: Tensor, sigma: Tensor) -> Tensor:
         """Return the clean channels that an answer v stands for."""
