@@ -24,7 +24,6 @@ COMMAS = STOPS | {",", "、"}
 MOST, MOST_WORDS = 1e6, 6  # of any amount, and of a numeral
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
 MOST_SEATS = 16
-ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals, cases and genders
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 
 
@@ -50,8 +49,9 @@ class Claim:
 @functools.lru_cache(maxsize=8192)
 def stem(word: str) -> str:
     """Return a word without the endings that any of the languages may put to it."""
+    endings = lexicon()["endings"]
     for _ in range(2 if word.isalpha() else 0):
-        word = word.removesuffix(next((e for e in ENDINGS if word.endswith(e) and len(word) - len(e) >= 3), ""))
+        word = word.removesuffix(next((e for e in endings if word.endswith(e) and len(word) - len(e) >= 3), ""))
     return word
 
 
@@ -283,7 +283,7 @@ class Scan:
         if counted and (opens := self.length(named, "opens")):  # so many at least: nobody minds one more
             return self._put("openable", k, named + opens + self.length(named + opens, "things", "pieces"), least=least)
         pieces = self.length(at + looks, "pieces") if counted else 0
-        if pieces and self.text(at + looks) != "a" and self.words[at + looks].start not in self.counted:
+        if pieces and self.words[at + looks].start not in self.counted:
             self._style(at, looks)
             return self._put("pieces", k, at + looks + pieces, "", least, most)
         name_at, length, name = self._name(at)
@@ -296,7 +296,7 @@ class Scan:
             shown = any(
                 words(f)[-1] == last for some in lexicon()["names"].get(name, {}).values() for f in some
             )  # "drawers", "lavavajillas"
-            least = 2 if last.endswith("s") and last[0].isascii() and not shown else 1
+            least = 2 if last.endswith(lexicon()["plural"]) and last[0].isascii() and not shown else 1
         self.negated = most == 0
         self._style(at, name_at - at)
         size = self._put("count", k, name_at + length, name, least, most)

@@ -289,7 +289,7 @@ class _Amount:
         i += _kind_at(marks, i) in {"hyphen", "dash"} and _kind_at(marks, i + 1) == "unit"
         if _kind_at(marks, i) == "unit":
             unit, i = marks[i], i + 1
-        crossed = i < len(marks) and (marks[i].kind == "times" or marks[i].text in {"x", *self.lex.sign("crossing")})
+        crossed = i < len(marks) and (marks[i].kind == "times" or marks[i].text in self.lex.sign("crossing"))
         if _kind_at(marks, i + 1) == "num" and _kind_at(marks, i + 2) == "unit" and marks[i].kind != "comma":
             second, after = marks[i + 1].number, marks[i + 2]
             joins = marks[i].kind == "dash" or marks[i].text in self.lex.range_to
