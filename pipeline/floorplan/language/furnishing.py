@@ -17,6 +17,8 @@ from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, tokenize, words
+from pipeline.floorplan.program.consistency import ImpossibleError
+from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence
 from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
 
 STOPS = frozenset(".;!?\n。;!?")
@@ -343,11 +345,20 @@ class Scan:
 
 
 def read_furniture(prompt: str) -> tuple[str, list[Claim]]:
-    """Return the prompt without its wishes for furniture (blanks in their place, so that places hold), and the wishes."""
+    """Return the prompt without its wishes for furniture (blanks in their place, so that places hold), and the wishes.
+
+    Raises ImpossibleError for more things than any room may have, and for a share of floor above 100 %.
+    """
     scan = Scan(prompt)
     claims = scan.run()
     if not claims:
         return prompt, claims
+    for c in claims:
+        words = [Evidence(start=c.start, end=c.end, text=prompt[c.start : c.end], field="furniture")]
+        if (many := max(c.least, c.most or 0)) > MAX_PIECES:
+            raise ImpossibleError(f"{many} things are asked for", f"ask for {MAX_PIECES} at most", words)
+        if c.value > 1.0:
+            raise ImpossibleError(f"{c.value:.0%} of a floor are to be free", "ask for a share below 100 %", words)
     text = list(prompt)
     for w, gone in zip(scan.words, _blank(scan, claims), strict=True):
         if gone:

@@ -22,7 +22,7 @@ from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
-from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence, FloorProgram, Furniture, Span, Things
+from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, Furniture, Span, Things
 from pipeline.floorplan.program.furniture import impossible, natural
 
 LONGEST = 20_000  # characters
@@ -224,9 +224,6 @@ def combine_claims(claims: Sequence[Claim], prompt: str, where: str) -> Furnitur
         return least, most
 
     for claim in claims:
-        many = max(claim.least, claim.most or 0)
-        if many > MAX_PIECES:
-            _clash(f"{many} things are asked for in {where}, and {MAX_PIECES} are the most", [claim], claim, prompt)
         if claim.kind == "count":
             old = counts.get(claim.name, Things(category=claim.name))
             least, most = narrowed(claim, old.min, old.max, claim.name.removeprefix("any_"))
@@ -239,8 +236,6 @@ def combine_claims(claims: Sequence[Claim], prompt: str, where: str) -> Furnitur
                 _clash(f"{where} is to be both {fields['style']} and {claim.name}", claims, claim, prompt)
         elif claim.kind == "openable":
             fields["openable"] = max(fields.get("openable", 0), claim.least)
-        elif claim.value > 1.0:
-            _clash(f"{claim.value:.0%} of {where} are to be free", [claim], claim, prompt)
         else:
             fields["walkable"] = max(fields.get("walkable", 0.0), claim.value)
     return Furniture.model_validate({**fields, "counts": tuple(counts.values())})

@@ -231,7 +231,7 @@ def settle(parsed: list[list[Mark]]) -> None:
 
 
 CONFLICTS = {
-    "homes": ("{} homes are asked for", "ask for one home at a time"),
+    "homes": ("{} homes are asked for", "ask for one home; sfgen shard --prompts FILE --count N makes many"),
     "conflict": ("two counts are asked for: {!r}", "keep one of them"),
 }
 RELATIONS = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}

@@ -29,7 +29,7 @@ class Token:
 @functools.cache
 def characters() -> Mapping[str, Any]:
     """Return how words are written in any of the languages; `word` is the pattern of one."""
-    rules = yaml_text.parse(FILE.read_text(encoding="utf-8"))
+    rules: dict[str, Any] = yaml_text.parse(FILE.read_text(encoding="utf-8"))
     han, short = rules["han"], "|".join(rules["short"])
     whole = "|".join(re.escape(w) + (r"(?!\d)" if w[-1].isdecimal() else "") for w in rules["whole"])
     number = r"\d+(?:[.,]\d{3})+(?![\d])|\d+(?:[.,]\d+)?"
