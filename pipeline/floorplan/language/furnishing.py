@@ -353,12 +353,10 @@ def read_furniture(prompt: str) -> tuple[str, list[Claim]]:
     claims = scan.run()
     if not claims:
         return prompt, claims
-    for c in claims:
-        words = [Evidence(start=c.start, end=c.end, text=prompt[c.start : c.end], field="furniture")]
-        if (many := max(c.least, c.most or 0)) > MAX_PIECES:
-            raise ImpossibleError(f"{many} things are asked for", f"ask for {MAX_PIECES} at most", words)
-        if c.value > 1.0:
-            raise ImpossibleError(f"{c.value:.0%} of a floor are to be free", "ask for a share below 100 %", words)
+    for c in (c for c in claims if max(c.least, c.most or 0) > MAX_PIECES or c.value > 1.0):
+        said = [Evidence(start=c.start, end=c.end, text=prompt[c.start : c.end], field="furniture")]
+        what, most = (f"{c.value:.0%} of a floor", "100%") if c.value else (f"{max(c.least, c.most or 0)} things", MAX_PIECES)
+        raise ImpossibleError(f"{what} are asked for", f"ask for {most} at most", said)
     text = list(prompt)
     for w, gone in zip(scan.words, _blank(scan, claims), strict=True):
         if gone:
