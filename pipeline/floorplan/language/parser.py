@@ -300,7 +300,8 @@ class _Place:
     def _led(self, room: Mention, claim: Claim) -> bool:
         """Whether a word or a mark between a room and a wish gives the one to the other: "with", "has", a colon."""
         between = range(self._at(room.end), self._at(claim.start))
-        marked = any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in between)
+        inside = {k for c in self.claims for k in range(self._at(c.start), self._at(c.end))}  # "no bath": it leads to no other wish
+        marked = any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in between if k not in inside)
         return marked or "characters" in self.scan.traits
 
     def _joined(self, start: int, end: int) -> bool:
