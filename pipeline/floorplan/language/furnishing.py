@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG
+from pipeline.floorplan.language.lexicon import STRONG
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.spelling import detect
@@ -115,9 +115,8 @@ class Scan:
         written = [fold(t.text) for t in tokens]
         texts = [w if stem(w) in _stems() else read for w, read in zip(written, heard.texts if heard is not None else written, strict=True)]
         self.words = [_Word(text, stem(text), t.start, t.end) for t, text in zip(tokens, texts, strict=True) if text != "-"]
-        self.rooms = {
-            tokens[k].start: k == m.first for m in marks if m.kind in STRONG for k in range(m.first, m.last)
-        }  # first words or not
+        # names of rooms: whether a word is the first of one
+        self.rooms = {tokens[k].start: k == m.first for m in marks if m.kind in STRONG for k in range(m.first, m.last)}
         self.numbers = {t.start: (t.end, min(t.number, MOST)) for t in tokens if t.number is not None}
         alone = ((w, heard.lexicon.trie.get(w.text, {}).get("")) for w in self.words) if heard is not None else ()  # "for two desks"
         self.numbers |= {w.start: (w.end, min(m.number, MOST)) for w, m in alone if m is not None and m.kind == "num"}
@@ -141,16 +140,13 @@ class Scan:
         """Whether word k names a room, or is another word of the prompt's language: "Büro" is no "buró", "never" no "nevera"."""
         word = self.words[k]
         if not self.language or word.stem in _name_stems(name, self.language):
-            return (
-                "characters" not in spoken(self.language or LANGUAGES[0]).traits and self.rooms.get(word.start) is False
-            )  # "a walk-in wardrobe"
+            return "characters" not in self.traits and self.rooms.get(word.start) is False  # "a walk-in wardrobe"
         return word.start in self.rooms or word.text in spoken(self.language).vocabulary
 
     def phrase(self, k: int, *kinds: str) -> tuple[int, str]:
         """Return (length, name) of the longest phrase of those kinds at word k, (0, "") where there is none."""
-        return next(
-            ((size, name) for size, kind, name, owned in self._here(k) if kind in kinds and (not owned or self._owned(k, name))), (0, "")
-        )
+        here = ((size, name) for size, kind, name, owned in self._here(k) if kind in kinds and (not owned or self._owned(k, name)))
+        return next(here, (0, ""))
 
     def length(self, k: int, *kinds: str) -> int:
         """Return the length of the longest phrase of those kinds at word k."""
@@ -179,11 +175,8 @@ class Scan:
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
             between = self.prompt[self.words[at].end : self.words[k].start]
-            if (
-                between.rfind("(") > between.rfind(")")
-                or self.length(at + 1, "none")
-                or any(self.length(j, "with") for j in range(at + 1, k))
-            ):
+            led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
+            if led or between.rfind("(") > between.rfind(")"):
                 return True
         return bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4))
 
@@ -295,9 +288,8 @@ class Scan:
             least, most = 0, 0
         elif read is None:
             last = self.text(name_at + length - 1)
-            shown = any(
-                words(f)[-1] == last for some in lexicon()["names"].get(name, {}).values() for f in some
-            )  # "drawers", "lavavajillas"
+            called = (form for some in lexicon()["names"].get(name, {}).values() for form in some)
+            shown = any(words(form)[-1] == last for form in called)  # "drawers", "lavavajillas"
             least = 2 if last.endswith(lexicon()["plural"]) and last[0].isascii() and not shown else 1
         self.negated = most == 0
         self._style(at, name_at - at)

@@ -180,10 +180,8 @@ def validate_reply(reply: str, prompt: str) -> FloorProgram:
     program = FloorProgram.model_validate(_mark_stated(answer))
     if not program.rooms:
         raise ValueError("rooms: there are none")
-    if (
-        sum(r.count for r in program.rooms) > MAX_ROOMS
-        or max(len(program.links), len(program.forbids), len(program.relations)) > MOST_ENTRIES
-    ):
+    longest = max(len(program.links), len(program.forbids), len(program.relations))
+    if sum(r.count for r in program.rooms) > MAX_ROOMS or longest > MOST_ENTRIES:
         raise ValueError(f"rooms: at most {MAX_ROOMS}, and at most {MOST_ENTRIES} links, forbids and relations each")
     ids = [r.id for r in program.rooms]
     if len(set(ids)) != len(ids):

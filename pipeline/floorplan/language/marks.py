@@ -120,10 +120,8 @@ def segment(words: Words) -> list[Mark]:
             marks.append(mark)
         else:
             i += 1
-    written_as_one = [
-        k for k, m in enumerate(marks) if m.kind == "hyphen" and [x.kind for x in marks[k - 1 : k + 2 : 2]] == ["room", "room"]
-    ]
-    marks = [m for k, m in enumerate(marks) if m.kind != "hyphen" or k in written_as_one]
+    between = ([x.kind for x in marks[max(k - 1, 0) : k + 2 : 2]] for k in range(len(marks)))  # "kitchen-diner" is written as one
+    marks = [m for m, beside in zip(marks, between, strict=True) if m.kind != "hyphen" or beside == ["room", "room"]]
     return _relabel(_numbers(marks, words), words)
 
 

@@ -194,10 +194,9 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
             where = f"rooms.{room}.furniture" if room else "furniture"
             field = f"{where}.{claim.name if claim.kind == 'count' else claim.kind}"
             evidence.append(Evidence(start=claim.start, end=claim.end, text=prompt[claim.start : claim.end], field=field))
-    furnished = [
-        r.model_copy(update={"furniture": combine_claims(by_room[r.id], prompt, r.id)}) if r.id in by_room else r for r in program.rooms
-    ]
-    own = combine_claims(by_room[""], prompt, "the home") if "" in by_room else program.furniture
+    wished = {room: combine_claims(some, prompt, room or "the home") for room, some in by_room.items()}
+    furnished = (r.model_copy(update={"furniture": wished.get(r.id, r.furniture)}) for r in program.rooms)
+    own = wished.get("", program.furniture)
     return program.model_copy(update={"rooms": tuple(furnished), "furniture": own, "evidence": (*program.evidence, *evidence)})
 
 
@@ -243,9 +242,8 @@ def combine_claims(claims: Sequence[Claim], prompt: str, where: str) -> Furnitur
 
 def _clash(message: str, claims: Sequence[Claim], claim: Claim, prompt: str) -> NoReturn:
     both = [c for c in claims if c.kind == claim.kind and (c.name == claim.name or claim.kind != "count")]
-    raise ImpossibleError(
-        message, "keep one of the two", [Evidence(start=c.start, end=c.end, text=prompt[c.start : c.end], field="furniture") for c in both]
-    )
+    words = [Evidence(start=c.start, end=c.end, text=prompt[c.start : c.end], field="furniture") for c in both]
+    raise ImpossibleError(message, "keep one of the two", words)
 
 
 class _Place:

@@ -181,9 +181,8 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Mark, postposed: bool, lex: L
     adjectives = "adjectives_behind" in lex.traits
     while k < len(marks):
         mark, ahead = marks[k], marks[k + 1] if k + 1 < len(marks) else None
-        if (mark.kind == "adj" and adjectives) or (
-            mark.kind == "det" and mark.value in BEHIND and (adjectives or not _heads_phrase(marks, k + 1))
-        ):
+        determines = mark.kind == "det" and mark.value in BEHIND and (adjectives or not _heads_phrase(marks, k + 1))
+        if determines or (mark.kind == "adj" and adjectives):
             (phrase.det if mark.kind == "det" else phrase.adjectives).add(mark.value)
             phrase.role = phrase.role or (mark.value if mark.value in ROLES else "")
             phrase.last = mark.last

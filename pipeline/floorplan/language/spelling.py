@@ -118,12 +118,8 @@ def _cost(word: str, target: str, far: float) -> float:
     two = not far and len(target) >= LONG - 1 and (len(word) >= LONG or swapped)
     gap = distance(word, target, 2 if two else 1)
     usual, other = swapped or _slip(word, target), word[0] != target[0]
-    if (
-        gap > 1 + two
-        or (short <= SHORTEST and not usual)
-        or (short < SHORTEST - 1 and not swapped)
-        or (other and (gap > 1 or len(word) < LONG - 2))
-    ):
+    tiny = (short <= SHORTEST and not usual) or (short < SHORTEST - 1 and not swapped)
+    if tiny or gap > 1 + two or (other and (gap > 1 or len(word) < LONG - 2)):
         return FAR
     return gap - (0.3 if usual else 0.0) + (0.2 if other else 0.0) + far
 
