@@ -2,7 +2,8 @@
 
 `python -m benchmarks.language [--file sentences] [--half held|tuned] [--language en] [--faults]`. Ground truth:
 `languages.yaml`, `sentences.yaml`, `speech.yaml`, `requests.yaml` and `everyday.yaml` in `manifests/prompts`. With `--engine llm [--replies FILE]`: read by the language model that SFGEN_LLM_* name; FILE (YAML, a list of
-{prompt, reply}) holds what it has answered before, is read instead of asking, and gets what is new.
+{prompt, reply}, the reply as text or as what its JSON holds) holds what it has answered before, is read instead of asking, and gets what is new;
+without SFGEN_LLM_* the prompts that it holds are scored, and no server is asked.
 """
 
 import argparse
@@ -30,7 +31,11 @@ def replay_engine(replies: dict[str, Any], server: llm.Server | None) -> Engine:
             if server is None:
                 raise llm.UnansweredError("no reply is recorded, and no server is configured")
             replies[prompt] = json.loads(llm.ask(prompt, server).model_dump_json(exclude_defaults=True))
-        program = complete(llm.validate_reply(json.dumps(replies[prompt], ensure_ascii=False), prompt))
+        reply = replies[prompt] if isinstance(replies[prompt], str) else json.dumps(replies[prompt], ensure_ascii=False)
+        try:
+            program = complete(llm.validate_reply(reply, prompt))
+        except llm.INVALID as error:
+            raise llm.UnansweredError(f"the reply is no program: {str(error)[:100]}") from error
         check(program)
         return program
 
@@ -49,13 +54,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
     known = yaml.safe_load(asked.replies.read_text(encoding="utf-8")) if asked.replies and asked.replies.exists() else []
     replies = {row["prompt"]: row["reply"] for row in known}
-    engine = replay_engine(replies, llm.server_from_env()) if asked.engine == "llm" else None
+    server = llm.server_from_env() if asked.engine == "llm" else None
+    engine = replay_engine(replies, server) if asked.engine == "llm" else None
+    offline = engine is not None and server is None
+    if offline and not replies:
+        parser.error("no reply is recorded: give --replies FILE, or set SFGEN_LLM_BASE_URL and SFGEN_LLM_MODEL")
     exact: Counter[tuple[str, str, str]] = Counter()
     count: Counter[tuple[str, str, str]] = Counter()
     spent = 0.0
     for name, case in ((f, c) for f in FILES if asked.file in (None, f) for c in load(f)):
         key = (name, case["id"][:2], case["half"])
-        if (asked.half and asked.half != key[2]) or (asked.language and asked.language != key[1]):
+        other = (asked.half and asked.half != key[2]) or (asked.language and asked.language != key[1])
+        if other or (offline and case["prompt"] not in replies):
             continue
         start = time.process_time()
         wrong = faults(case, engine)
@@ -66,6 +76,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"{case['id']}: {case['prompt']}\n    " + "\n    ".join(wrong))
     for key in sorted(count):
         print(f"{' '.join(key)}: {exact[key]} of {count[key]} exact")
+    if offline:
+        print(f"{sum(exact.values())} of {sum(count.values())} recorded replies exact")
     if asked.replies and len(replies) > len(known):
         rows = [{"prompt": prompt, "reply": reply} for prompt, reply in replies.items()]
         asked.replies.write_text(yaml.safe_dump(rows, allow_unicode=True, sort_keys=False), encoding="utf-8")

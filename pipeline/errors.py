@@ -1,6 +1,6 @@
 """The project's exceptions. Each names the offending thing and the remedy; the CLI maps each to its exit code."""
 
-from typing import ClassVar
+from typing import ClassVar, Self
 
 
 class SfgenError(Exception):
@@ -15,6 +15,12 @@ class SfgenError(Exception):
         self.message = message
         self.remedy = remedy
         super().__init__(f"{message}; {remedy}" if remedy else message)
+
+    def placed(self, where: str) -> Self:
+        """Return the error with the place that it is about in front of its message."""
+        self.message = f"{where}: {self.message}"
+        self.args = (f"{where}: {self}",)
+        return self
 
 
 class ContentError(SfgenError):

@@ -82,7 +82,7 @@ def shard(
     prompts: Annotated[Path | None, typer.Option(help="Text file, a prompt a line; or list of {prompt, weight} in YAML or JSON.")] = None,
     scheduler: Annotated[str | None, typer.Option(help="A Dask scheduler, tcp://host:port or its file, instead of --workers.")] = None,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Stop at the first home that cannot be made, instead of leaving it empty.")
+        bool, typer.Option("--strict", help="Refuse prompts of which words are not understood; stop at the first home that cannot be made.")
     ] = False,
     only: Annotated[
         int | None, typer.Option(min=0, help="Make the home of this index alone and write nothing: shows what is wrong with it.")

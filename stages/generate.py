@@ -12,6 +12,7 @@ from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.draw.drawing import svg
 from pipeline.floorplan.imports import describe_repairs, program_of, read_own
 from pipeline.floorplan.program.description import assumptions, notes
+from pipeline.floorplan.prompt import understood
 from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.factory import open_factory
 from pipeline.homes.furniture_report import deliveries, report
@@ -39,7 +40,9 @@ def main(
 
     A language model reads the prompt where one is configured.
     """
-    program, wish, repairs = asked_in_words(prompt, strict=strict) if source is None else asked_by_plan(root, source, house, prompt)
+    program, wish, repairs = (
+        asked_in_words(prompt, strict=strict) if source is None else asked_by_plan(root, source, house, prompt, strict=strict)
+    )
     single_thread()
     progress = Progress(1, "home", voice=voice)
     progress.phase("reading the layout model and the library")
@@ -66,8 +69,7 @@ def main(
         progress.summary(scene_id=outcome.home.scene_id, files=written, deliveries=[asdict(d) for d in delivered], repairs=repairs)
         return
     sys.stdout.write(report(delivered))
-    if source is None:
-        sys.stderr.write(notes(program, assumptions(program)))
+    sys.stderr.write(notes(program, assumptions(program) if source is None else []))
     sys.stdout.write(describe_repairs(repairs))
     for file in written:
         sys.stdout.write(f"{file}\n")
@@ -80,12 +82,14 @@ def asked_in_words(prompt: str, *, strict: bool = False) -> tuple[FloorProgram, 
     return program, Request(0, asked, program.model_dump_json(exclude_defaults=True)), []
 
 
-def asked_by_plan(root: Path, source: Path, house: str | None, prompt: str) -> tuple[FloorProgram, Request, list[dict[str, str]]]:
+def asked_by_plan(
+    root: Path, source: Path, house: str | None, prompt: str, *, strict: bool = False
+) -> tuple[FloorProgram, Request, list[dict[str, str]]]:
     """Return the program and the request of a plan of the user's own, and what was repaired in it; `prompt` wishes for furniture."""
     own = require_sound(root, read_own(source, house))
     program = program_of(own.plan)
     if prompt:
-        program = with_wishes(program, require_prompt(prompt))
+        program = understood(with_wishes(program, require_prompt(prompt)), strict=strict)
     document = json.dumps(plan_json(own.plan))
     return program, Request(0, prompt or describe(program), program.model_dump_json(exclude_defaults=True), document), own.repairs_json()
 

@@ -1,20 +1,24 @@
 """Words about the furniture of a plan that is given: they may name its rooms, and ask for no others."""
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.furnishing import read_furniture
+from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
 from pipeline.floorplan.language.parser import Mention, attach, check_length, room_mentions, understand_rooms
+from pipeline.floorplan.language.spelling import detect
+from pipeline.floorplan.language.text import fold, tokenize
 from pipeline.floorplan.program.consistency import ImpossibleError, check_furniture
-from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, RoomReq
+from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, RoomReq, Span
 from pipeline.floorplan.program.furniture import allot, spread
 
 
 def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:
     """Return the program of a given plan with the prompt's wishes for furniture.
 
-    Raises RefusedError when the prompt has no such wish, names a room that the plan lacks, or asks for what no room can meet.
+    What else the prompt says is in its `unparsed` and `unbuilt`. Raises RefusedError when the prompt has no such wish, names a room that
+    the plan lacks, or asks for what no room can meet.
     """
     check_length(prompt)
     plain, claims = read_furniture(prompt)
@@ -28,9 +32,21 @@ def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:
     except RefusedError:  # no room is named: the wishes are the whole home's
         said = None
     mentions = _in_plan(program, said, prompt) if said is not None else []
-    wished = allot(spread(attach(program, claims, prompt, mentions)))
+    lost = {"unparsed": said.unparsed, "unbuilt": said.unbuilt} if said is not None else {"unparsed": tuple(_unknown(plain, prompt))}
+    wished = allot(spread(attach(program.model_copy(update=lost), claims, prompt, mentions)))
     check_furniture(wished)
     return wished
+
+
+def _unknown(plain: str, prompt: str) -> Iterator[Span]:
+    """Yield the words that are in no vocabulary of a prompt that names no room; `plain` is it without its wishes."""
+    try:
+        known = lexicon(detect(prompt)).vocabulary
+    except RefusedError:  # wishes alone tell no language
+        known = set().union(*(lexicon(language).vocabulary for language in LANGUAGES))
+    for token in tokenize(plain):
+        if token.text[0].isalpha() and fold(token.text) not in known:
+            yield Span(start=token.start, end=token.end, text=prompt[token.start : token.end])
 
 
 def _in_plan(program: FloorProgram, said: FloorProgram, prompt: str) -> list[Mention]:

@@ -53,17 +53,18 @@ class Order:
 
 
 def read_order(prompts: Path | None, seed: int, progress: Progress, *, strict: bool) -> Order:
-    """Read the prompts; those that ask for what cannot be are said now, not after hours.
+    """Read the prompts; those that ask for what cannot be are said now, not after hours, with their place in the file.
 
-    Raises RefusedError for the first of them with `strict`, or when there are no others.
+    Raises RefusedError for the first of them with `strict`, or when there are no others; with `strict` prompts of which words are not
+    understood, or ask for what nobody builds, are such as well.
     """
     mix = read_mix(prompts) if prompts else Mix()
     programs, errors = {}, []
     for words in dict.fromkeys(mix.prompts):
         try:
-            programs[words] = request(words).model_dump_json(exclude_defaults=True)
+            programs[words] = request(words, strict=strict).model_dump_json(exclude_defaults=True)
         except RefusedError as error:
-            errors.append(error)
+            errors.append(error.placed(mix.places[mix.prompts.index(words)]))
     if errors and (strict or not programs):
         raise errors[0]
     for refusal in errors[:SHOWN]:

@@ -27,6 +27,7 @@ class Mix:
 
     prompts: tuple[str, ...] = ()
     weights: tuple[float, ...] = ()
+    places: tuple[str, ...] = ()  # of each prompt: "line 3 of prompts.txt"
 
     def prompt(self, seed: int, index: int) -> str:
         """Return the prompt of home `index`; it depends on nothing else, so a dataset can grow."""
@@ -62,8 +63,10 @@ def read_mix(path: Path) -> Mix:
     Raises as `read_entries` does, and UsageError for an empty or over-long prompt.
     """
     remedy = "write a list of entries `- {prompt: ..., weight: 2}`"
-    drawn = [_entry(entry, f"{name} of {path}", remedy) for name, entry in read_entries(path, remedy)]
-    return Mix(tuple(prompt for prompt, _ in drawn), tuple(weight for _, weight in drawn) if path.suffix.lower() in LISTS else ())
+    entries = {f"{name} of {path}": entry for name, entry in read_entries(path, remedy)}
+    drawn = [_entry(entry, place, remedy) for place, entry in entries.items()]
+    weights = tuple(weight for _, weight in drawn) if path.suffix.lower() in LISTS else ()
+    return Mix(tuple(prompt for prompt, _ in drawn), weights, tuple(entries))
 
 
 def read_entries(path: Path, remedy: str) -> list[tuple[str, object]]:

@@ -44,12 +44,12 @@ class Paper:
     def make(self, requests, first=None):
         assert len(requests) <= self.chunk
         self.asked += [(r.index, r.prompt) for r in requests]
-        if any("broken" in r.prompt for r in requests):
+        if any("loft" in r.prompt for r in requests):
             raise ZeroDivisionError("a bug")
         return [self.one(r) for r in requests]
 
     def one(self, request):
-        if "palace" in request.prompt:
+        if "mansion" in request.prompt:
             return Empty(request.index, "refused", RefusedError("no palace", "ask for less"))
         return self.home(request)
 
@@ -141,7 +141,7 @@ def test_shard_refuses_in_one_line_and_loses_nothing(factory, tmp_path, capsys, 
     assert not list(tmp_path.rglob("shard-*"))
 
 
-HARD = "a studio\na palace on the moon with two bedrooms\na broken studio\n"
+HARD = "a studio\na mansion with two bedrooms\na loft with one bedroom\n"
 
 
 def test_what_cannot_be_made_leaves_its_index_empty_and_the_run_goes_on(factory, tmp_path, capsys):
@@ -179,6 +179,32 @@ def test_strict_stops_at_the_first(factory, tmp_path, capsys):
     assert run("shard", "--count", 7, "--out", "d", "--prompts", "p.txt", "--strict") == 3
     assert "no palace" in capsys.readouterr().err
     assert not list(Path("d").glob("commits/shard-*"))
+
+
+UNREAD = "# mine\na studio\n\ntwo bedrooms and a flumox\na flat with a kitchen island\n"
+
+
+@pytest.mark.parametrize(("file", "place"), [("p.txt", "line 4 of p.txt"), ("p.yaml", "entry 2 of p.yaml")])
+def test_strict_refuses_a_prompt_with_words_that_are_not_understood_before_anything_is_made(factory, tmp_path, capsys, file, place):
+    prompts = [line for line in UNREAD.splitlines() if line and line[0] != "#"]
+    (tmp_path / file).write_text(UNREAD if file == "p.txt" else json.dumps([{"prompt": p} for p in prompts]))
+    command = ("shard", "--count", 7, "--out", "d", "--prompts", file)
+    assert run(*command, "--strict") == 3
+    assert f"sfgen: {place}: not understood: 'flumox'" in capsys.readouterr().err
+    assert factory.asked == []
+    assert not Path("d").exists()
+    assert run(*command) == 0
+    assert len(factory.asked) == 7
+
+
+def test_generate_refuses_words_that_are_not_understood_before_anything_is_made(factory, tmp_path, capsys):
+    plan = {"rooms": [{"type": "bedroom", "polygon": [[0, 0], [5, 0], [5, 4], [0, 4]]}]}
+    (tmp_path / "plan.json").write_text(json.dumps(plan))
+    for prompt, source in (("two bedrooms and a flumox", []), ("a bedroom with a flumox and two nightstands", ["--plan", "plan.json"])):
+        assert run("generate", prompt, *source, "--out", "h", "--strict") == 3
+        assert "not understood: 'flumox'" in capsys.readouterr().err
+        assert factory.asked == []
+        assert not Path("h").exists()
 
 
 def test_one_home_is_made_again_to_see_what_is_wrong(factory, tmp_path, capsys):

@@ -75,14 +75,9 @@ def _room(room: Named) -> dict[str, Any]:
     stated = any(v is not None for v in area.values())
     if not stated and room.size != 1.0:
         area["target"] = round(DEFAULTS[room.type].area * room.size, 2)
-    same = ("id", "stated", "type", "level", "exterior_length", "window", "min_width")
+    own = {f: getattr(room, f) for f in ("id", "stated", "type", "level", "exterior_length", "window", "min_width")}
     role = "" if room.role == "ensuite" else room.role
-    return {
-        **{f: getattr(room, f) for f in same},
-        "role": role,
-        "functions": tuple(sorted(room.functions)),
-        "area": {**area, "stated": stated},
-    }
+    return own | {"role": role, "functions": tuple(sorted(room.functions)), "area": area | {"stated": stated}}
 
 
 # how many rooms
@@ -110,9 +105,8 @@ def _count(draft: Draft, state: Reading) -> None:
             room.stated &= usual or room in known
     elif count > 1:
         while sum(r.type not in BESIDES for r in stock.rooms) < count and len(stock.rooms) != count:
-            stock.add(
-                next((k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)), "bedroom"), "", "room", None
-            ).stated = False
+            kind = next((k for k in ("living_room", "kitchen", "bathroom") if not stock.of(k)), "bedroom")
+            stock.add(kind, "", "room", None).stated = False
         draft.fields["only"] = True
 
 
@@ -245,9 +239,8 @@ def _whole(draft: Draft, state: Reading) -> None:
     single = [e for e in (flags.get("single"), *state.homes) if e is not None and (e.kind == "flag" or e.text in bungalow)]
     above = [(e.first, e.last) for e in state.levels if e.value != "0"] or said
     if storeys > 1 and single and above:
-        draft.refuse(
-            "a home of one storey has nothing upstairs", "ask for two storeys", [(single[0].first, single[0].last), *above], "storeys"
-        )
+        spans = [(single[0].first, single[0].last), *above]
+        draft.refuse("a home of one storey has nothing upstairs", "ask for two storeys", spans, "storeys")
     for e in state.levels:
         draft.cite(e.first, e.last, "storeys")
     fields["storeys"] = storeys

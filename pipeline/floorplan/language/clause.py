@@ -16,7 +16,6 @@ STANDINS = {"it", "both", "group", "one", "rest", "some", "each", "all", "self",
 LISTING = {"comma", "and", "or"}
 LIKE = 0.15  # two rooms are alike where they differ by less
 BESIDE = {"near", "wall"}  # what such a relation joins lies on one storey
-
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
 HUGE, LARGE, MORE, LISTED = 5.0, 2.5, 1.6, 1.3  # times the usual area of the room in front: from there on an area is the home's
 
@@ -35,8 +34,7 @@ class Clause:
     """The state of reading one sentence."""
 
     def __init__(self, state: Reading, sentence: list[Mark]) -> None:
-        self.state, self.sentence = state, sentence
-        self.stock = state.inventory
+        self.state, self.sentence, self.stock = state, sentence, state.inventory
         self.run: list[Mark] = []  # the list of phrases in front of the next relation
         self.subject: Group = ()
         self.latest: Group = ()
@@ -397,4 +395,6 @@ def attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
     elif mark.value != "car":
         before = next((x for x in reversed(c.sentence[:k]) if x.kind != "word"), None)
         set_off = before is not None and before.kind in {"comma", "and"}
+        limit = set_off and mark.bound in {"least", "most"} and c.objects == c.latest  # "a study near the bedroom, at least 10 m²"
+        rooms = (named_rooms(c.subject) if limit else ()) or rooms
         state.amounts.append((mark, rooms if rooms and not (set_off and measures_home(c, k, mark, rooms, True)) else None))

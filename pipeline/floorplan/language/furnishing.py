@@ -12,11 +12,13 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.lexicon import LANGUAGES, STRONG
+from pipeline.floorplan.language.lexicon import STRONG
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, tokenize, words
+from pipeline.floorplan.program.consistency import ImpossibleError
+from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence
 from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
 
 STOPS = frozenset(".;!?\n。;!?")
@@ -24,7 +26,6 @@ COMMAS = STOPS | {",", "、"}
 MOST, MOST_WORDS = 1e6, 6  # of any amount, and of a numeral
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
 MOST_SEATS = 16
-ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")  # of plurals, cases and genders
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 
 
@@ -50,8 +51,9 @@ class Claim:
 @functools.lru_cache(maxsize=8192)
 def stem(word: str) -> str:
     """Return a word without the endings that any of the languages may put to it."""
+    endings = lexicon()["endings"]
     for _ in range(2 if word.isalpha() else 0):
-        word = word.removesuffix(next((e for e in ENDINGS if word.endswith(e) and len(word) - len(e) >= 3), ""))
+        word = word.removesuffix(next((e for e in endings if word.endswith(e) and len(word) - len(e) >= 3), ""))
     return word
 
 
@@ -113,9 +115,8 @@ class Scan:
         written = [fold(t.text) for t in tokens]
         texts = [w if stem(w) in _stems() else read for w, read in zip(written, heard.texts if heard is not None else written, strict=True)]
         self.words = [_Word(text, stem(text), t.start, t.end) for t, text in zip(tokens, texts, strict=True) if text != "-"]
-        self.rooms = {
-            tokens[k].start: k == m.first for m in marks if m.kind in STRONG for k in range(m.first, m.last)
-        }  # first words or not
+        # names of rooms: whether a word is the first of one
+        self.rooms = {tokens[k].start: k == m.first for m in marks if m.kind in STRONG for k in range(m.first, m.last)}
         self.numbers = {t.start: (t.end, min(t.number, MOST)) for t in tokens if t.number is not None}
         alone = ((w, heard.lexicon.trie.get(w.text, {}).get("")) for w in self.words) if heard is not None else ()  # "for two desks"
         self.numbers |= {w.start: (w.end, min(m.number, MOST)) for w, m in alone if m is not None and m.kind == "num"}
@@ -139,16 +140,13 @@ class Scan:
         """Whether word k names a room, or is another word of the prompt's language: "Büro" is no "buró", "never" no "nevera"."""
         word = self.words[k]
         if not self.language or word.stem in _name_stems(name, self.language):
-            return (
-                "characters" not in spoken(self.language or LANGUAGES[0]).traits and self.rooms.get(word.start) is False
-            )  # "a walk-in wardrobe"
+            return "characters" not in self.traits and self.rooms.get(word.start) is False  # "a walk-in wardrobe"
         return word.start in self.rooms or word.text in spoken(self.language).vocabulary
 
     def phrase(self, k: int, *kinds: str) -> tuple[int, str]:
         """Return (length, name) of the longest phrase of those kinds at word k, (0, "") where there is none."""
-        return next(
-            ((size, name) for size, kind, name, owned in self._here(k) if kind in kinds and (not owned or self._owned(k, name))), (0, "")
-        )
+        here = ((size, name) for size, kind, name, owned in self._here(k) if kind in kinds and (not owned or self._owned(k, name)))
+        return next(here, (0, ""))
 
     def length(self, k: int, *kinds: str) -> int:
         """Return the length of the longest phrase of those kinds at word k."""
@@ -177,11 +175,8 @@ class Scan:
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
             between = self.prompt[self.words[at].end : self.words[k].start]
-            if (
-                between.rfind("(") > between.rfind(")")
-                or self.length(at + 1, "none")
-                or any(self.length(j, "with") for j in range(at + 1, k))
-            ):
+            led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
+            if led or between.rfind("(") > between.rfind(")"):
                 return True
         return bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4))
 
@@ -283,7 +278,7 @@ class Scan:
         if counted and (opens := self.length(named, "opens")):  # so many at least: nobody minds one more
             return self._put("openable", k, named + opens + self.length(named + opens, "things", "pieces"), least=least)
         pieces = self.length(at + looks, "pieces") if counted else 0
-        if pieces and self.text(at + looks) != "a" and self.words[at + looks].start not in self.counted:
+        if pieces and self.words[at + looks].start not in self.counted:
             self._style(at, looks)
             return self._put("pieces", k, at + looks + pieces, "", least, most)
         name_at, length, name = self._name(at)
@@ -293,10 +288,9 @@ class Scan:
             least, most = 0, 0
         elif read is None:
             last = self.text(name_at + length - 1)
-            shown = any(
-                words(f)[-1] == last for some in lexicon()["names"].get(name, {}).values() for f in some
-            )  # "drawers", "lavavajillas"
-            least = 2 if last.endswith("s") and last[0].isascii() and not shown else 1
+            called = (form for some in lexicon()["names"].get(name, {}).values() for form in some)
+            shown = any(words(form)[-1] == last for form in called)  # "drawers", "lavavajillas"
+            least = 2 if last.endswith(lexicon()["plural"]) and last[0].isascii() and not shown else 1
         self.negated = most == 0
         self._style(at, name_at - at)
         size = self._put("count", k, name_at + length, name, least, most)
@@ -343,11 +337,18 @@ class Scan:
 
 
 def read_furniture(prompt: str) -> tuple[str, list[Claim]]:
-    """Return the prompt without its wishes for furniture (blanks in their place, so that places hold), and the wishes."""
+    """Return the prompt without its wishes for furniture (blanks in their place, so that places hold), and the wishes.
+
+    Raises ImpossibleError for more things than any room may have, and for a share of floor above 100 %.
+    """
     scan = Scan(prompt)
     claims = scan.run()
     if not claims:
         return prompt, claims
+    for c in (c for c in claims if max(c.least, c.most or 0) > MAX_PIECES or c.value > 1.0):
+        said = [Evidence(start=c.start, end=c.end, text=prompt[c.start : c.end], field="furniture")]
+        what, most = (f"{c.value:.0%} of a floor", "100%") if c.value else (f"{max(c.least, c.most or 0)} things", MAX_PIECES)
+        raise ImpossibleError(f"{what} are asked for", f"ask for {most} at most", said)
     text = list(prompt)
     for w, gone in zip(scan.words, _blank(scan, claims), strict=True):
         if gone:

@@ -19,7 +19,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
-from pipeline.floorplan.language.text import Compounds, Plurals, Verbs, bare, fold, forms, words
+from pipeline.floorplan.language.text import Compounds, Plurals, Verbs, bare, characters, fold, forms, words
 from pipeline.floorplan.program.floor_program import RoomType, Style
 from pipeline.floorplan.program.furniture import lexicon as furniture
 
@@ -238,8 +238,8 @@ def _spellings(phrase: str, contracted: Mapping[str, str]) -> Iterable[tuple[str
     """Return the words of a phrase, also as they look when umlauts and apostrophes are dropped, or its last word has an article in it."""
     usual = words(phrase)
     plain = usual if phrase.isascii() else words(bare(phrase))
-    if "n't" in phrase:
-        plain = words(phrase.replace("n't", "nt"))
+    for short in (s for s in characters()["dropped"] if s in phrase):
+        plain = words(phrase.replace(short, short.replace("'", "")))
     spellings = dict.fromkeys((usual, plain))
     if len(usual) > 1 and usual[-1] in contracted:  # "la mitad de" and "la mitad del"
         spellings |= dict.fromkeys((*p[:-1], contracted[p[-1]]) for p in (usual, plain))

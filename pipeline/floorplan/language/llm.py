@@ -37,6 +37,7 @@ from pipeline.manifest import digest, write_bytes
 SECONDS = 60.0  # for all turns together
 MOST_BYTES = 1_000_000  # of one reply
 MOST_TOKENS = 4000
+MOST_COMPLAINT = 4000  # bytes of a refusal that are read
 REPAIRS = 2
 PAUSES = (0.5, 1.0)  # [s] before a busy server is asked again
 BUSY = frozenset({408, 429, 500, 502, 503, 504})
@@ -179,10 +180,8 @@ def validate_reply(reply: str, prompt: str) -> FloorProgram:
     program = FloorProgram.model_validate(_mark_stated(answer))
     if not program.rooms:
         raise ValueError("rooms: there are none")
-    if (
-        sum(r.count for r in program.rooms) > MAX_ROOMS
-        or max(len(program.links), len(program.forbids), len(program.relations)) > MOST_ENTRIES
-    ):
+    longest = max(len(program.links), len(program.forbids), len(program.relations))
+    if sum(r.count for r in program.rooms) > MAX_ROOMS or longest > MOST_ENTRIES:
         raise ValueError(f"rooms: at most {MAX_ROOMS}, and at most {MOST_ENTRIES} links, forbids and relations each")
     ids = [r.id for r in program.rooms]
     if len(set(ids)) != len(ids):
@@ -194,7 +193,7 @@ def _answer(messages: list[dict[str, str]], server: Server, deadline: float) -> 
     """Return the text of one reply: patient with a busy server, and with one that knows fewer or other parameters."""
     usual: dict[str, Any] = {"max_tokens": MOST_TOKENS, "temperature": 0, "seed": 0}
     strict = {"type": "json_schema", "json_schema": {"name": "FloorProgram", "schema": schema()}}
-    variants = [usual | {"response_format": strict}, usual | {"response_format": {"type": "json_object"}}, {}]
+    variants: list[dict[str, Any]] = [usual | {"response_format": strict}, usual | {"response_format": {"type": "json_object"}}, {}]
     pauses = list(PAUSES)
     while True:
         body = {"model": server.model, "messages": messages, **variants[0]}
@@ -203,7 +202,10 @@ def _answer(messages: list[dict[str, str]], server: Server, deadline: float) -> 
             content = json.loads(raw)["choices"][0]["message"]["content"]
             break
         except urllib.error.HTTPError as error:
-            if error.code in UNSUPPORTED and len(variants) > 1:
+            known = _known(variants, " ".join(getattr(error, "__notes__", ())))
+            if error.code in UNSUPPORTED and known != variants:
+                variants = known
+            elif error.code in UNSUPPORTED and len(variants) > 1:
                 del variants[0]
             elif error.code in BUSY and pauses:
                 time.sleep(max(0.0, min(pauses.pop(0), deadline - time.monotonic())))
@@ -214,6 +216,14 @@ def _answer(messages: list[dict[str, str]], server: Server, deadline: float) -> 
     if not isinstance(content, str):
         raise UnansweredError("the server's reply holds no text")
     return content
+
+
+def _known(variants: Sequence[Mapping[str, Any]], complaint: str) -> list[dict[str, Any]]:
+    """Return the parameters without those that a server's complaint names, the most tokens under their newer name where it asks for that."""
+    old, new = "max_tokens", "max_completion_tokens"
+    renamed = {old: new} if new in complaint and old in variants[0] else {}
+    left = [{k: v for k, v in each.items() if k in renamed or k not in complaint or k == "response_format"} for each in variants]
+    return [{renamed.get(k, k): v for k, v in each.items()} for each in left]
 
 
 def _within(call: Callable[[], bytes], deadline: float) -> bytes:
@@ -234,7 +244,7 @@ def _within(call: Callable[[], bytes], deadline: float) -> bytes:
 
 
 def _post(body: Mapping[str, Any], server: Server) -> bytes:
-    """Post one request and return the reply's body. HTTPError passes; other failures are UnansweredError."""
+    """Post one request and return the reply's body. HTTPError passes, with the server's words as a note; other failures are UnansweredError."""
     headers = {"Content-Type": "application/json", **({"Authorization": f"Bearer {server.key}"} if server.key else {})}
     asked = urllib.request.Request(  # noqa: S310 - `server_from_env` admits http and https only
         f"{server.base_url}/chat/completions", json.dumps(body).encode(), headers, method="POST"
@@ -242,7 +252,9 @@ def _post(body: Mapping[str, Any], server: Server) -> bytes:
     try:
         with _OPENER.open(asked, timeout=server.seconds) as response:
             reply: bytes = response.read(server.most_bytes + 1)
-    except urllib.error.HTTPError:
+    except urllib.error.HTTPError as error:
+        with contextlib.suppress(OSError, http.client.HTTPException):
+            error.add_note(error.read(MOST_COMPLAINT).decode(errors="replace"))
         raise
     except (OSError, http.client.HTTPException, ValueError) as error:
         raise UnansweredError(f"{type(error).__name__}: {str(error)[:200]}") from error

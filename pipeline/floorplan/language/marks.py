@@ -120,10 +120,8 @@ def segment(words: Words) -> list[Mark]:
             marks.append(mark)
         else:
             i += 1
-    written_as_one = [
-        k for k, m in enumerate(marks) if m.kind == "hyphen" and [x.kind for x in marks[k - 1 : k + 2 : 2]] == ["room", "room"]
-    ]
-    marks = [m for k, m in enumerate(marks) if m.kind != "hyphen" or k in written_as_one]
+    between = ([x.kind for x in marks[max(k - 1, 0) : k + 2 : 2]] for k in range(len(marks)))  # "kitchen-diner" is written as one
+    marks = [m for m, beside in zip(marks, between, strict=True) if m.kind != "hyphen" or beside == ["room", "room"]]
     return _relabel(_numbers(marks, words), words)
 
 
@@ -289,7 +287,7 @@ class _Amount:
         i += _kind_at(marks, i) in {"hyphen", "dash"} and _kind_at(marks, i + 1) == "unit"
         if _kind_at(marks, i) == "unit":
             unit, i = marks[i], i + 1
-        crossed = i < len(marks) and (marks[i].kind == "times" or marks[i].text in {"x", *self.lex.sign("crossing")})
+        crossed = i < len(marks) and (marks[i].kind == "times" or marks[i].text in self.lex.sign("crossing"))
         if _kind_at(marks, i + 1) == "num" and _kind_at(marks, i + 2) == "unit" and marks[i].kind != "comma":
             second, after = marks[i + 1].number, marks[i + 2]
             joins = marks[i].kind == "dash" or marks[i].text in self.lex.range_to

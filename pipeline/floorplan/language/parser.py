@@ -22,7 +22,7 @@ from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import tokenize
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
-from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence, FloorProgram, Furniture, Span, Things
+from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, Furniture, Span, Things
 from pipeline.floorplan.program.furniture import impossible, natural
 
 LONGEST = 20_000  # characters
@@ -194,10 +194,9 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
             where = f"rooms.{room}.furniture" if room else "furniture"
             field = f"{where}.{claim.name if claim.kind == 'count' else claim.kind}"
             evidence.append(Evidence(start=claim.start, end=claim.end, text=prompt[claim.start : claim.end], field=field))
-    furnished = [
-        r.model_copy(update={"furniture": combine_claims(by_room[r.id], prompt, r.id)}) if r.id in by_room else r for r in program.rooms
-    ]
-    own = combine_claims(by_room[""], prompt, "the home") if "" in by_room else program.furniture
+    wished = {room: combine_claims(some, prompt, room or "the home") for room, some in by_room.items()}
+    furnished = (r.model_copy(update={"furniture": wished.get(r.id, r.furniture)}) for r in program.rooms)
+    own = wished.get("", program.furniture)
     return program.model_copy(update={"rooms": tuple(furnished), "furniture": own, "evidence": (*program.evidence, *evidence)})
 
 
@@ -224,9 +223,6 @@ def combine_claims(claims: Sequence[Claim], prompt: str, where: str) -> Furnitur
         return least, most
 
     for claim in claims:
-        many = max(claim.least, claim.most or 0)
-        if many > MAX_PIECES:
-            _clash(f"{many} things are asked for in {where}, and {MAX_PIECES} are the most", [claim], claim, prompt)
         if claim.kind == "count":
             old = counts.get(claim.name, Things(category=claim.name))
             least, most = narrowed(claim, old.min, old.max, claim.name.removeprefix("any_"))
@@ -239,8 +235,6 @@ def combine_claims(claims: Sequence[Claim], prompt: str, where: str) -> Furnitur
                 _clash(f"{where} is to be both {fields['style']} and {claim.name}", claims, claim, prompt)
         elif claim.kind == "openable":
             fields["openable"] = max(fields.get("openable", 0), claim.least)
-        elif claim.value > 1.0:
-            _clash(f"{claim.value:.0%} of {where} are to be free", [claim], claim, prompt)
         else:
             fields["walkable"] = max(fields.get("walkable", 0.0), claim.value)
     return Furniture.model_validate({**fields, "counts": tuple(counts.values())})
@@ -248,9 +242,8 @@ def combine_claims(claims: Sequence[Claim], prompt: str, where: str) -> Furnitur
 
 def _clash(message: str, claims: Sequence[Claim], claim: Claim, prompt: str) -> NoReturn:
     both = [c for c in claims if c.kind == claim.kind and (c.name == claim.name or claim.kind != "count")]
-    raise ImpossibleError(
-        message, "keep one of the two", [Evidence(start=c.start, end=c.end, text=prompt[c.start : c.end], field="furniture") for c in both]
-    )
+    words = [Evidence(start=c.start, end=c.end, text=prompt[c.start : c.end], field="furniture") for c in both]
+    raise ImpossibleError(message, "keep one of the two", words)
 
 
 class _Place:
@@ -305,7 +298,8 @@ class _Place:
     def _led(self, room: Mention, claim: Claim) -> bool:
         """Whether a word or a mark between a room and a wish gives the one to the other: "with", "has", a colon."""
         between = range(self._at(room.end), self._at(claim.start))
-        marked = any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in between)
+        inside = {k for c in self.claims for k in range(self._at(c.start), self._at(c.end))}  # "no bath": it leads to no other wish
+        marked = any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in between if k not in inside)
         return marked or "characters" in self.scan.traits
 
     def _joined(self, start: int, end: int) -> bool:

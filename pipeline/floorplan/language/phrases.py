@@ -181,9 +181,8 @@ def _behind(marks: Sequence[Mark], k: int, phrase: Mark, postposed: bool, lex: L
     adjectives = "adjectives_behind" in lex.traits
     while k < len(marks):
         mark, ahead = marks[k], marks[k + 1] if k + 1 < len(marks) else None
-        if (mark.kind == "adj" and adjectives) or (
-            mark.kind == "det" and mark.value in BEHIND and (adjectives or not _heads_phrase(marks, k + 1))
-        ):
+        determines = mark.kind == "det" and mark.value in BEHIND and (adjectives or not _heads_phrase(marks, k + 1))
+        if determines or (mark.kind == "adj" and adjectives):
             (phrase.det if mark.kind == "det" else phrase.adjectives).add(mark.value)
             phrase.role = phrase.role or (mark.value if mark.value in ROLES else "")
             phrase.last = mark.last
@@ -231,7 +230,7 @@ def settle(parsed: list[list[Mark]]) -> None:
 
 
 CONFLICTS = {
-    "homes": ("{} homes are asked for", "ask for one home at a time"),
+    "homes": ("{} homes are asked for", "ask for one home; sfgen shard --prompts FILE --count N makes many"),
     "conflict": ("two counts are asked for: {!r}", "keep one of them"),
 }
 RELATIONS = {"near", "door", "open", "wall", "away", "apart", "leads", "between"}

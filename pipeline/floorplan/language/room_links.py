@@ -228,9 +228,8 @@ def _suites(draft: Draft, stock: Inventory, facts: Sequence[Fact]) -> None:
         reach = near | {j for i in near if stock.get(i).type == "closet" for j in draft.neighbours(i)}
         if not any(stock.get(i).type == "bathroom" for i in reach):
             levels = {r.level for r in stock.rooms} if bed.level is None else {None, bed.level}
-            known = [
-                r for r in stock.of("bathroom") if (r.role in ENSUITE or (r.open_slot and r.level in levels)) and not draft.neighbours(r.id)
-            ]
+            theirs = (r for r in stock.of("bathroom") if r.role in ENSUITE or (r.open_slot and r.level in levels))
+            known = [r for r in theirs if not draft.neighbours(r.id)]
             bath = min(known, key=lambda r: not r.role) if known else stock.add("bathroom", "", "en suite", bed.level)
             bath.open_slot = False
             _give(draft, stock, bath.id, bed.id, fact)

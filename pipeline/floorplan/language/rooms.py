@@ -249,11 +249,9 @@ def _within(state: Reading, e: Mark, count: float) -> None:
     """Refuse more rooms of a type than a whole count allows: "a two-bedroom flat ... the third bedroom"."""
     same = state.inventory.of(e.type)
     if count > MAX_ROOMS or (count > len(same) and any(r.whole for r in same)):
-        words = [state.heard.quote(*r.span, "rooms") for r in same if r.span is not None]
+        words = dict.fromkeys(state.heard.quote(*r.span, "rooms") for r in same if r.span is not None)
         what = f"{count:g} {e.type.replace('_', ' ')}s are asked for" + (f", and {len(same)} besides" if same else "")
-        raise ImpossibleError(
-            what, "keep one of the two counts", [*dict.fromkeys(words), state.heard.quote(max(e.first - 1, 0), e.last, "rooms")]
-        )
+        raise ImpossibleError(what, "keep one of the two counts", [*words, state.heard.quote(max(e.first - 1, 0), e.last, "rooms")])
 
 
 def _by_role(state: Reading, sentence: list[Mark], k: int, role: str, level: int | None) -> list[Named]:
@@ -341,9 +339,8 @@ def _count(state: Reading, e: Mark) -> list[Named]:
 def _whole(sentence: list[Mark], k: int) -> bool:
     """Whether the number of a phrase is the count of all such rooms: "a two-bedroom flat", "three baths in total"."""
     e = sentence[k]
-    return (e.compound and not e.role) or (
-        e.number > 0 and any(x.kind == "flag" and x.value == "total" for x in sentence[max(0, k - 1) : k + 2])
-    )
+    total = any(x.kind == "flag" and x.value == "total" for x in sentence[max(0, k - 1) : k + 2])
+    return (e.compound and not e.role) or (e.number > 0 and total)
 
 
 def _introduce_rooms(state: Reading, sentence: list[Mark], k: int, level: int | None) -> list[Named]:

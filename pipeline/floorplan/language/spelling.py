@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.lexicon import FARTHER, LANGUAGES, STRONG, Language, Lexicon, Meaning, kinds, lexicon, unread
-from pipeline.floorplan.language.text import HAN, Token, fold, is_han, tokenize
+from pipeline.floorplan.language.text import Token, characters, fold, is_han, tokenize
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
 ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
@@ -37,7 +37,7 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     stem = _stem(word, lex)
     if stem:
         return (stem,)
-    bared = word.removesuffix("'").removesuffix("'s")
+    bared = word.removesuffix("'").removesuffix(characters()["genitive"])
     if bared != word:
         return (bared,) if bared in lex.vocabulary else resolve(bared, language, every=every)
     near, cost = _nearest(word, language, every)
@@ -118,12 +118,8 @@ def _cost(word: str, target: str, far: float) -> float:
     two = not far and len(target) >= LONG - 1 and (len(word) >= LONG or swapped)
     gap = distance(word, target, 2 if two else 1)
     usual, other = swapped or _slip(word, target), word[0] != target[0]
-    if (
-        gap > 1 + two
-        or (short <= SHORTEST and not usual)
-        or (short < SHORTEST - 1 and not swapped)
-        or (other and (gap > 1 or len(word) < LONG - 2))
-    ):
+    tiny = (short <= SHORTEST and not usual) or (short < SHORTEST - 1 and not swapped)
+    if tiny or gap > 1 + two or (other and (gap > 1 or len(word) < LONG - 2)):
         return FAR
     return gap - (0.3 if usual else 0.0) + (0.2 if other else 0.0) + far
 
@@ -175,7 +171,8 @@ def detect(prompt: str) -> Language:
     if not texts:
         raise RefusedError(_quote_prompt(prompt, "no words in the prompt"), f"say in {_read()} which rooms you want")
     han = sum(is_han(t[0]) for t in texts)
-    foreign = sum(t.text[0].isalpha() and not re.match(rf"[a-zà-ÿœß{HAN}]", t.text) for t in tokens)  # in a script that is not read
+    letters = characters()["latin"] + characters()["han"]
+    foreign = sum(t.text[0].isalpha() and not re.match(rf"[{letters}]", t.text) for t in tokens)  # in a script that is not read
     if han and han >= 0.3 * len(texts) and not foreign:
         return next(language for language in LANGUAGES if _han(language))
     scores = [(*_score(language, texts, repaired=False), language) for language in LANGUAGES if not _han(language)]

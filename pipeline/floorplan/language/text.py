@@ -5,20 +5,14 @@ import re
 import unicodedata
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
-HAN = "\u3400-\u9fff"
-WORD = re.compile(
-    rf"\d+(?:[.,]\d{{3}})+(?![\d])|\d+(?:[.,]\d+)?|[{HAN}]|m²|ft²|m2(?!\d)|ft2(?!\d)|[^\W\d_{HAN}]+(?:'(?:s|t|ve|d|ll|re|m)\b)?'?|w/o\b|<->|->|=>|→|[<>]=|[<>](?=\s*\d|$)|[≤≥]|1½|½|[%.,;:!?()/&~+=*•|–—\-×。、;:!?()\n\[\]]",
-    re.IGNORECASE,
-)
-ALIKE = str.maketrans(
-    "著廳臥衛陽臺臺儲雜書傢廚餐間個樓層門獨開進關從鄰緊連須車庫廊過單雙幾兩無礙廁馬飯遠離總積約達應該寬闊淨幹濕療養孫輪椅機電視課學習遊戲娛樂縫紉圖館玄關採採淺灰歐風簡約與對齊後邊裡裏頭頂層閣點頂傳統較讓給將內別墅還還請號樣當這會幫設計畫面圍繞並須禁毗緊貫穿於",
-    "着厅卧卫阳台台储杂书家厨餐间个楼层门独开进关从邻紧连须车库廊过单双几两无碍厕马饭远离总积约达应该宽阔净干湿疗养孙轮椅机电视课学习游戏娱乐缝纫图馆玄关采采浅灰欧风简约与对齐后边里里头顶层阁点顶传统较让给将内别墅还还请号样当这会帮设计画面围绕并须禁毗紧贯穿于",
-)
-MARKS = {"。": ".", "、": "&", ",": ",", ";": ";", ":": ":", "!": "!", "?": "?", "(": "(", ")": ")", "【": "(", "】": ")", "~": "~", "“": " ", "”": " ", "「": " ", "」": " ", "„": " ", "’": "'", "‘": "'", "´": "'", "`": "'", "㎡": "m²", "×": "x", "−": "-", "‐": "-", "‑": "-", "[": "(", "]": ")"}  # fmt: skip
+from pipeline import yaml_text
 
+FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "characters.yaml"
 HALVES = {"½": 0.5, "1½": 1.5}
 
 
@@ -32,16 +26,29 @@ class Token:
     number: float | None = None
 
 
+@functools.cache
+def characters() -> Mapping[str, Any]:
+    """Return how words are written in any of the languages; `word` is the pattern of one."""
+    rules: dict[str, Any] = yaml_text.parse(FILE.read_text(encoding="utf-8"))
+    han, short = rules["han"], "|".join(rules["short"])
+    whole = "|".join(re.escape(w) + (r"(?!\d)" if w[-1].isdecimal() else "") for w in rules["whole"])
+    number = r"\d+(?:[.,]\d{3})+(?![\d])|\d+(?:[.,]\d+)?"
+    signs = r"<->|->|=>|→|[<>]=|[<>](?=\s*\d|$)|[≤≥]|1½|½|[%.,;:!?()/&~+=*•|–—\-×。、;:!?()\n\[\]]"
+    word = re.compile(rf"{number}|[{han}]|{whole}|[^\W\d_{han}]+(?:'(?:{short})\b)?'?|{signs}", re.IGNORECASE)
+    return rules | {"word": word, "alike": str.maketrans(*rules["alike"])}
+
+
 def clean(prompt: str) -> tuple[str, list[int]]:
     """Return the prompt in lower case, compatibility forms resolved, invisible and control characters taken out, and the place of each character.
 
     Traditional Chinese characters become simplified ones. Invisible characters inside a word leave no gap.
     """
-    characters: list[str] = []
+    marks, alike = characters()["marks"], characters()["alike"]
+    cleaned: list[str] = []
     places: list[int] = []
     for place, char in enumerate(prompt):
         if char.isascii() and (char.isalnum() or char == " "):
-            characters.append(char.lower())
+            cleaned.append(char.lower())
             places.append(place)
             continue
         kind = unicodedata.category(char)
@@ -52,16 +59,16 @@ def clean(prompt: str) -> tuple[str, list[int]]:
         elif kind[0] in "CZ":
             out = " "
         else:
-            out = MARKS.get(char) or (char if char in "²½" else unicodedata.normalize("NFKC", char).lower().translate(ALIKE))
+            out = marks.get(char) or (char if char in "²½" else unicodedata.normalize("NFKC", char).lower().translate(alike))
         for piece in out:
-            if unicodedata.combining(piece) and characters:  # a letter and its accent, written apart
-                joined = unicodedata.normalize("NFC", characters[-1] + piece)
+            if unicodedata.combining(piece) and cleaned:  # a letter and its accent, written apart
+                joined = unicodedata.normalize("NFC", cleaned[-1] + piece)
                 if len(joined) == 1:
-                    characters[-1] = joined
+                    cleaned[-1] = joined
                 continue
-            characters.append(MARKS.get(piece, piece))
+            cleaned.append(marks.get(piece, piece))
             places.append(place)
-    return "".join(characters), places
+    return "".join(cleaned), places
 
 
 def tokenize(prompt: str) -> list[Token]:
@@ -73,9 +80,9 @@ def tokenize(prompt: str) -> list[Token]:
 def _tokens(prompt: str) -> tuple[Token, ...]:
     text, places = clean(prompt)
     tokens = []
-    for match in WORD.finditer(text):
+    for match in characters()["word"].finditer(text):
         raw = match.group()
-        if raw[0].isalpha() and raw.endswith("'") and not raw.endswith("s'"):
+        if raw[0].isalpha() and raw.endswith("'") and not raw.endswith(characters()["plural_genitive"]):
             raw = raw[:-1]
         tokens.append(Token(raw, places[match.start()], places[match.end() - 1] + 1, _number(raw)))
     return tuple(tokens)
@@ -91,27 +98,29 @@ def _number(raw: str) -> float | None:
 
 def is_han(char: str) -> bool:
     """Whether a character is a Chinese one."""
-    return "\u3400" <= char <= "\u9fff"
+    first, _, last = characters()["han"]
+    return bool(first <= char <= last)
 
 
 def fold(word: str) -> str:
     """Return a word without accents; umlauts and sharp s as two letters."""
     if word.isascii():
         return word
-    word = word.replace("ä", "ae").replace("ö", "oe").replace("ü", "ue").replace("ß", "ss")
-    return "".join(c for c in unicodedata.normalize("NFD", word) if not unicodedata.combining(c)) if not word.isascii() else word
+    for letter, two in characters()["apart"].items():
+        word = word.replace(letter, two)
+    return word if word.isascii() else bare(word)
 
 
 def bare(word: str) -> str:
     """Return a word without accents and umlauts: how it looks when they are dropped."""
-    return "".join(c for c in unicodedata.normalize("NFD", word.replace("ß", "ss")) if not unicodedata.combining(c))
+    return "".join(c for c in unicodedata.normalize("NFD", word.casefold()) if not unicodedata.combining(c))
 
 
 def words(phrase: str) -> tuple[str, ...]:
     """Return the folded words of a phrase of a lexicon."""
     plain, ascii_only = phrase.replace("-", " "), phrase.isascii()
     if not ascii_only and all(map(is_han, phrase)):
-        return tuple(phrase.translate(ALIKE))
+        return tuple(phrase.translate(characters()["alike"]))
     if plain.replace(" ", "").isalpha() and (ascii_only or not any(map(is_han, plain))):
         return tuple(fold(w) for w in plain.split())
     return tuple(fold(t.text) for t in tokenize(phrase) if t.text != "-")

@@ -109,6 +109,11 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
                 add("studio_room", "studio")
             else:
                 add("living_room", "living")
+        lived = [r for r in rooms if r.type in {"living_room", "family_room", "studio_room"}]
+        if not types & {"bedroom", "studio_room"} and not any(
+            r.stated for r in lived
+        ):  # one that an open kitchen has brought is no bedroom
+            add("bedroom", "bed")
         if "kitchen" not in types and "cooking" not in functions:
             add("kitchen", "kitchen")
         if "bathroom" not in types:

@@ -1,6 +1,8 @@
 """French is a file of data, `manifests/lexicon/fr.yaml`: plurals, adjectives behind their noun and all ways to say a thing, without a line of code of its own."""
 
 import ast
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -56,9 +58,65 @@ def test_a_french_family_has_bedrooms():
     assert sum(r.type == "bedroom" for r in parse("Une maison pour une famille de quatre personnes.").rooms) == 3
 
 
+CODE = Path(__file__).parents[3] / "pipeline" / "floorplan" / "language"
+TAKES_TEXT = {"startswith", "endswith", "removesuffix", "removeprefix"}
+ELIDED = re.compile(r"'(\(\?:)?[a-z]", re.IGNORECASE)  # "n't", "'s", and a pattern of such
+NAMES = {"auto", "chat"}  # of a wish for windows and of a server's address; words in German and French besides
+
+
+def strings(tree: ast.AST) -> Iterator[ast.Constant]:
+    """Yield the strings of a module that are no docstrings and no messages: those without a blank, be they parts of a pattern."""
+    texts = {id(n.value) for n in ast.walk(tree) if isinstance(n, ast.Expr) and isinstance(n.value, ast.Constant)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in texts and " " not in node.value:
+            yield node
+
+
+def words_of_languages(code: str) -> list[str]:
+    """Return what in a module's code is a piece of some language: letters that English lacks, words of the other lexicons, what is elided, and ends of words."""
+    tree, found = ast.parse(code), []
+    english = lexicon("en").vocabulary
+    others = set().union(*(lexicon(language).vocabulary for language in LANGUAGES)) - english
+    for node in strings(tree):
+        letters = [c for c in node.value if c.isalpha() and not c.isascii()]
+        foreign = [w for w in re.findall(r"[a-z]+", node.value) if len(w) > 1 and w in others - NAMES]
+        if letters or foreign or ELIDED.search(node.value):
+            found.append(f"{node.lineno}: {node.value!r}")
+    for node in ast.walk(tree):
+        called = isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in TAKES_TEXT
+        compared = isinstance(node, ast.Compare) and re.search(r"\btexts?\b", ast.unparse(node))
+        texts = [n for n in ast.walk(node) if isinstance(n, ast.Constant) and isinstance(n.value, str)] if called or compared else []
+        found += [f"{n.lineno}: {n.value!r}" for n in texts if re.fullmatch(r"'?[a-z]{1,3}'?", n.value)]
+    return found
+
+
+def test_no_code_holds_words_of_a_language():
+    found = [f"{file.name}:{what}" for file in sorted(CODE.glob("*.py")) for what in words_of_languages(file.read_text(encoding="utf-8"))]
+    assert not found
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'ENDINGS = ("en", "es", "as", "os", "em", "e", "n", "s", "a", "o")',
+        r"""WORD = re.compile(rf"[^\W\d_{HAN}]+(?:'(?:s|t|ve|d|ll|re|m)\b)?'?")""",
+        'ALIKE = str.maketrans("廳", "厅")',
+        'word = word.replace("ä", "ae")',
+        """bared = word.removesuffix("'").removesuffix("'s")""",
+        """plain = words(phrase.replace("n't", "nt"))""",
+        'least = 2 if last.endswith("s") else 1',
+        'if self.text(k) != "a": pass',
+        'crossed = mark.text in {"x", "mal"}',
+        'if "zimmer" in signs: pass',
+    ],
+)
+def test_words_of_a_language_in_code_are_found(code):
+    assert words_of_languages(code)
+
+
 def test_no_code_asks_for_a_language_by_name():
     names = {lexicon(language).name.lower() for language in LANGUAGES} | {"mandarin"}
-    for file in sorted((Path(__file__).parents[3] / "pipeline" / "floorplan" / "language").glob("*.py")):
+    for file in sorted(CODE.glob("*.py")):
         assert not names & set(file.stem.split("_")), file.name
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Compare) and "language" in ast.unparse(node):

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from benchmarks.language import main as score
 from benchmarks.language import replay_engine
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import complete
@@ -19,7 +20,7 @@ from pipeline.floorplan.language import llm
 from pipeline.floorplan.language.llm import Server, UnansweredError, ask, server_from_env
 from pipeline.floorplan.program.consistency import check
 from pipeline.floorplan.prompt import request
-from tests.floorplan.language.faults import faults
+from tests.floorplan.language.faults import faults, load
 
 GOOD = json.dumps(
     {
@@ -315,8 +316,36 @@ def test_the_worked_examples_are_valid_and_quote_their_requests():
         assert all(r.stated for r in program.rooms)
 
 
-@pytest.mark.parametrize("complaint", ["use max_completion_tokens", "'temperature' does not support 0"])
-def test_a_server_with_other_parameters_is_asked_with_none(serve, complaint):
+RENAMED = "Unsupported parameter: 'max_tokens' is not supported with this model. Use 'max_completion_tokens' instead."
+PICKY = [
+    ({"max_tokens": RENAMED}, {"temperature", "seed", "response_format", "max_completion_tokens"}, 2),
+    ({"max_tokens": "use max_completion_tokens"}, {"temperature", "seed", "response_format", "max_completion_tokens"}, 2),
+    ({"max_tokens": RENAMED, "temperature": "'temperature' does not support 0"}, {"seed", "response_format", "max_completion_tokens"}, 3),
+    ({"temperature": "'temperature' does not support 0"}, {"max_tokens", "seed", "response_format"}, 2),
+    ({"max_tokens": RENAMED, "max_completion_tokens": "max_completion_tokens: unknown"}, {"temperature", "seed", "response_format"}, 3),
+    ({"seed": "seed?", "response_format": "no response_format here"}, set(), 4),
+    ({"temperature": "no", "max_tokens": "no"}, set(), 3),
+]
+
+
+@pytest.mark.parametrize(("refuses", "kept", "asked"), PICKY)
+def test_a_server_that_refuses_a_parameter_is_asked_without_it_or_by_its_newer_name(serve, refuses, kept, asked):
+    def answer(handler):
+        sent = handler.server.seen[-1][2]
+        complaint = next((why for name, why in refuses.items() if name in sent), "")
+        (raw(json.dumps({"error": {"message": complaint}}).encode(), 400) if complaint else says(GOOD))(handler)
+
+    http, server = serve(answer)
+    assert [r.id for r in ask(PROMPT, server).rooms] == ["salon", "cuisine", "chambre", "bain"]
+    first, last = http.seen[0][2], http.seen[-1][2]
+    assert first["max_tokens"] == llm.MOST_TOKENS
+    assert set(last) == {"model", "messages", *kept}
+    assert last.get("max_completion_tokens", llm.MOST_TOKENS) == llm.MOST_TOKENS
+    assert len(http.seen) == asked
+
+
+@pytest.mark.parametrize("complaint", ["not so", ""])
+def test_a_server_that_does_not_say_what_it_refuses_is_asked_with_nothing_besides(serve, complaint):
     http, server = serve(*[raw(json.dumps({"error": complaint}).encode(), 400)] * 2, says(GOOD))
     assert len(request(PROMPT, server).rooms) == 4
     first, _, last = (asked for _, _, asked in http.seen)
@@ -342,3 +371,30 @@ def test_recorded_replies_are_scored_without_a_server():
     case = {"prompt": prompt, "rooms": ["bedroom", "bedroom", "bathroom"]}
     assert faults(case, engine) == []
     assert faults({**case, "prompt": "A kitchen"}, engine) != []
+
+
+def test_a_file_of_recorded_replies_is_scored_by_one_command_without_a_server(tmp_path, monkeypatch, capsys):
+    for name in ("SFGEN_LLM_BASE_URL", "SFGEN_LLM_MODEL"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(llm, "_post", lambda *_: pytest.fail("a server was asked"))
+    right, wrong, broken, refused = (c["prompt"] for c in load("languages")[:4])
+    rooms = [{"id": kind, "type": kind, "count": n} for kind, n in load("languages")[0]["rooms"].items()]
+    reply = {"rooms": rooms, "links": [{"a": "living_room", "b": "kitchen", "kind": "open"}], "total_area": {"target": 42}}
+    rows = [
+        {"prompt": right, "reply": f"```json\n{json.dumps(reply)}\n```"},  # as a model wrote it
+        {"prompt": wrong, "reply": {"rooms": [{"id": "gym", "type": "gym"}]}},
+        {"prompt": broken, "reply": "I cannot do that"},
+        {"prompt": refused, "reply": {"rooms": [{"id": "x", "type": "dungeon"}]}},
+    ]
+    recorded = tmp_path / "replies.yaml"
+    recorded.write_text(yaml.safe_dump(rows, allow_unicode=True), encoding="utf-8")
+    before = recorded.read_bytes()
+    assert score(["--engine", "llm", "--replies", str(recorded), "--faults"]) == 0
+    said = capsys.readouterr().out
+    assert "1 of 4 recorded replies exact" in said
+    assert said.count("no program: the reply is no program") == 2
+    assert recorded.read_bytes() == before
+    assert score(["--engine", "llm", "--replies", str(recorded), "--file", "everyday"]) == 0
+    assert "0 of 0 recorded" in capsys.readouterr().out
+    with pytest.raises(SystemExit):
+        score(["--engine", "llm"])

@@ -253,3 +253,26 @@ def test_at_least_less_than_the_least_is_met_by_it():
     assert parse("a hall at least 0.7 m wide").accessibility.min_corridor == pytest.approx(0.8)
     with pytest.raises(ImpossibleError, match=r"doors of 0.65 m"):
         parse("a flat with 65 cm doors")
+
+
+@pytest.mark.parametrize("prompt", ["two units", "a studio, two of them", "Wohnung, 2 davon, mit je einem Schlafzimmer", "两套两居室"])
+def test_several_homes_are_refused_with_the_command_that_makes_them(prompt):
+    with pytest.raises(ImpossibleError, match="2 homes are asked for") as caught:
+        parse(prompt)
+    assert "--count" in caught.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("prompt", "remedy"),
+    [("300% free", "100%"), ("a two-bedroom flat, 300 % free", "100%"), ("a bedroom with 500 chairs", "200 at most")],
+)
+def test_what_no_room_can_have_is_refused_with_what_one_can(prompt, remedy):
+    with pytest.raises(ImpossibleError) as caught:
+        parse(prompt)
+    assert remedy in caught.value.remedy
+
+
+def test_the_other_of_one_room_has_its_own_furniture():
+    program = parse("appartement avec deux chambres, une chambre avec un lit double et l'autre avec un lit simple et un bureau")
+    things = sorted(sorted(c.category for c in r.furniture.counts) for r in program.rooms if r.type == "bedroom")
+    assert things == [["desk", "single_bed"], ["double_bed"]]
