@@ -85,7 +85,10 @@ def drafts(factory: Factory, made: Made, jobs: Mapping[str, RoomJob], truth: Seq
 def main(folder: Path) -> None:
     """Print the table."""
     order = [*VARIANTS, *SOLVERS]
-    files = {path.stem: Made.read(path) for path in sorted(folder.glob("*.npz"), key=lambda path: order.index(path.stem) if path.stem in order else len(order))}
+    files = {
+        path.stem: Made.read(path)
+        for path in sorted(folder.glob("*.npz"), key=lambda path: order.index(path.stem) if path.stem in order else len(order))
+    }
     if not files:
         sys.exit(f"sfgen: {folder} holds no variant; run `python -m benchmarks.ablations.train {folder} 1500` first")
     tables = ROOT / "data" / "tables"
