@@ -1,14 +1,24 @@
-"""Nets on disk: safetensors with a header of text, written whole or not at all."""
+"""Nets on disk: safetensors with a header of text, written whole or not at all; and checkpoints, by which a killed training goes on."""
 
+import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeVar
 
+import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 from torch import Tensor, isfinite, nn
 
+from pipeline import params
 from pipeline.errors import ContentError
-from pipeline.manifest import write_bytes
+from pipeline.manifest import canonical, write_bytes
+
+T = TypeVar("T")
+Groups = dict[str, dict[str, Tensor]]
+CHECKPOINT = "sfgen-checkpoint-1"
+AGAIN = "delete it: training starts afresh without it"
 
 
 def save_tensors(path: Path, tensors: Mapping[str, Tensor], header: Mapping[str, str]) -> None:
@@ -36,3 +46,88 @@ def load_state(net: nn.Module, tensors: Mapping[str, Tensor], path: Path, remedy
         net.load_state_dict(tensors)
     except RuntimeError as error:
         raise ContentError(f"{path} does not fit the net ({str(error).splitlines()[0]})", remedy) from error
+
+
+def read_header(path: Path, header: Mapping[str, str], key: str, form: str, remedy: str) -> dict[str, Any]:
+    """Return what a file's header says in JSON under `key`, less its `format`. Raises ContentError where that is no mapping, or of another format than `form`."""
+    try:
+        said = json.loads(header.get(key, "{}"))
+    except (ValueError, RecursionError) as error:
+        raise ContentError(f"{path}: its header is no JSON ({error})", remedy) from error
+    if not isinstance(said, dict) or said.pop("format", None) != form:
+        raise ContentError(f"{path} is of another format than {form}", remedy)
+    return said
+
+
+def build_header(cls: type[T], value: Any, where: str, path: Path, remedy: str) -> T:
+    """Build the dataclass `cls` from what a file's header says, every key and type checked. Raises ContentError that names the file, not params.yaml."""
+    try:
+        return params.build(cls, value, where, str(path))
+    except ContentError as error:
+        said = error.message if error.message.startswith(str(path)) else f"{path}: {error.message}"
+        raise ContentError(said, remedy) from error
+
+
+def flatten(groups: Mapping[str, Mapping[str, Tensor]]) -> dict[str, Tensor]:
+    """Return named groups of tensors as one, by `<group>/<name>`."""
+    return {f"{group}/{name}": value for group, state in groups.items() for name, value in state.items()}
+
+
+def grouped(path: Path, tensors: Mapping[str, Tensor], remedy: str) -> Groups:
+    """Undo `flatten`. Raises ContentError for a name that is of no group."""
+    groups: Groups = {}
+    for name, value in tensors.items():
+        group, slash, own = name.partition("/")
+        if not slash:
+            raise ContentError(f"{path} holds a tensor of no net ({name})", remedy)
+        groups.setdefault(group, {})[own] = value
+    return groups
+
+
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """The file in which a training is kept while it runs. `digest` is that of all it depends on: what is of another one is not taken up."""
+
+    path: Path
+    digest: str
+
+    def save(self, step: int, groups: Mapping[str, Mapping[str, Tensor]]) -> None:
+        """Write named groups of tensors (weights, averages, moments) after `step` steps."""
+        text = canonical({"format": CHECKPOINT, "digest": self.digest, "step": step}).decode()
+        save_tensors(self.path, flatten(groups), {"checkpoint": text})
+
+    def load(self) -> tuple[int, Groups] | None:
+        """Return the step and the groups, or None where there is none, it is damaged, or of another digest: training then starts afresh."""
+        try:
+            tensors, headers = load_tensors(self.path, AGAIN)
+            header = read_header(self.path, headers, "checkpoint", CHECKPOINT, AGAIN)
+            groups = grouped(self.path, tensors, AGAIN)
+        except ContentError:
+            return None
+        step = header.get("step")
+        return (step, groups) if type(step) is int and header.get("digest") == self.digest else None
+
+    def keep(self, step: int, net: nn.Module, adam: torch.optim.Optimizer, rng: torch.Generator | None = None) -> None:
+        """Write a net with the moments of its optimiser and, where draws come from one generator, the state of that."""
+        moments = {f"{i}/{kind}": value for i, entry in adam.state_dict()["state"].items() for kind, value in entry.items()}
+        self.save(step, {"net": net.state_dict(), "adam": moments, "rng": {"state": rng.get_state()} if rng else {}})
+
+    def resume(self, net: nn.Module, adam: torch.optim.Optimizer, rng: torch.Generator | None = None) -> int:
+        """Take up what `keep` wrote, if it did; returns the number of steps done."""
+        found = self.load()
+        if found is None:
+            return 0
+        step, groups = found
+        state: dict[int, dict[str, Tensor]] = {}
+        for key, value in groups["adam"].items():
+            i, kind = key.split("/")
+            state.setdefault(int(i), {})[kind] = value
+        net.load_state_dict(groups["net"])
+        adam.load_state_dict({**adam.state_dict(), "state": state})
+        if rng:
+            rng.set_state(groups["rng"]["state"])
+        return step
+
+    def remove(self) -> None:
+        """Delete the file: what was trained is written."""
+        self.path.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""DVC stage `encode`: a point-cloud VAE over the assets' surfaces; stores the mean of the posterior.
+"""DVC stage `encode`: a point-cloud VAE over the assets' surfaces; stores the mean of the posterior. A training that was killed goes on.
 
 Reads data/tables/assets.parquet and data/assets/, writes data/latents/latents.parquet (with the assets' finishes), models/vae.safetensors and
 metrics/encode.json.
@@ -6,6 +6,7 @@ metrics/encode.json.
 
 import os
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +21,15 @@ from pipeline.errors import ContentError
 from pipeline.latents.fidelity import fidelity, self_ranking
 from pipeline.latents.surface import surface_points, triangles
 from pipeline.latents.training import encode, init_vae, train
-from pipeline.latents.vae import EncodeSettings, PointVae, chamfer, load_vae, save_vae
-from pipeline.manifest import write_json
+from pipeline.latents.vae import FORMAT, EncodeSettings, PointVae, chamfer, load_vae, save_vae
+from pipeline.manifest import digest, sha256, write_json
 from pipeline.rendering.surface_colour import finish_of
+from pipeline.tensors import Checkpoint
 from schemas import ASSETS, LATENTS
 
 Row = dict[str, Any]
 RELEASED = "weights/vae.safetensors"
+CHECKPOINT = "models/vae_checkpoint.safetensors"  # of a training that was killed
 
 
 def main(root: Path) -> None:
@@ -47,9 +50,13 @@ def main(root: Path) -> None:
     if settings.start == "released":
         net = load_released(root / RELEASED, settings)
     else:
-        for _ in tqdm(train(seed, net, first[learnt], settings, device), total=settings.steps, desc="encode", unit="step"):
+        clouds, threads = first[learnt], torch.get_num_threads()
+        key = digest([FORMAT, asdict(settings), seed, threads, device.type, sha256(clouds.numpy().tobytes())])
+        kept = Checkpoint(root / CHECKPOINT, key)
+        for _ in tqdm(train(seed, net, clouds, settings, device, kept), total=settings.steps, desc="encode", unit="step"):
             pass
     save_vae(root / "models/vae.safetensors", net, settings)
+    (root / CHECKPOINT).unlink(missing_ok=True)
     means = encode(net, first, device).numpy()
     known = {k: {"latent": mean.tolist(), "finish": finish} for k, mean, finish in zip(order, means, finishes, strict=True)}
     latents = [{"asset_id": r["asset_id"], **known[r["source"], r["source_id"]]} for r in rows]

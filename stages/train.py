@@ -1,4 +1,4 @@
-"""DVC stage `train`: the denoiser over object sets. Resumable: a checkpoint of the same data and settings is continued.
+"""DVC stage `train`: the denoiser over object sets, and the inventory model. Resumable: checkpoints of the same data and settings are continued.
 
 Reads data/tables/ and data/latents/, writes models/denoiser.safetensors, models/checkpoint/, metrics/train.json,
 plots/loss.csv and DVCLive's folder dvclive/.
@@ -13,9 +13,9 @@ import torch
 from tqdm import tqdm
 
 from pipeline import params
-from pipeline.diffusion.checkpoint import save_checkpoint, save_weights
+from pipeline.diffusion.checkpoint import save_weights
 from pipeline.diffusion.inventory import fit
-from pipeline.diffusion.job import CHECKPOINT, WEIGHTS, Job, holdings, open_job
+from pipeline.diffusion.job import WEIGHTS, Job, holdings, open_job
 from pipeline.diffusion.livelog import live_log
 from pipeline.diffusion.process_group import ProcessGroup, spawn_group
 from pipeline.diffusion.rooms import Sets
@@ -53,7 +53,7 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
     trainer = job.trainer
 
     def save(state: Trainer) -> None:
-        save_checkpoint(root / CHECKPOINT, job.key, state.done, state.groups())
+        job.checkpoint.save(state.done, state.groups())
 
     def validate() -> dict[str, dict[str, float]]:
         return validation(trainer, job.checked)
@@ -68,8 +68,10 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
             if step.done % 10 == 0 or last:
                 bar.set_postfix(loss=f"{step.loss:.3f}", geometry=f"{step.geometry:.3f}", refresh=False)
                 log(step, by_level)
-    inventory = fit(job.inventory, holdings(job.sets.train, job.header), trainer.settings.inventory, trainer.seed)
+    contents, kept = holdings(job.sets.train, job.header), (job.inventory_checkpoint, settings.checkpoint_every)
+    inventory = fit(job.inventory, contents, trainer.settings.inventory, trainer.seed, *kept)
     save_weights(root / WEIGHTS, job.header, {"denoiser": trainer.average, "inventory": inventory})
+    job.inventory_checkpoint.remove()
     write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or validate()))
 
 

@@ -14,8 +14,9 @@ from torch import Tensor
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
 from pipeline.diffusion.floor import KINDS, Floor
 from pipeline.diffusion.rooms import SWEEPS, Example
+from pipeline.diffusion.settings import MOST_SLOTS
 
-BUCKETS = (4, 8, 12, 16, 24, 32)  # slots that the rooms of a batch are padded to
+BUCKETS = (4, 8, 12, 16, 24, MOST_SLOTS)  # slots that the rooms of a batch are padded to
 
 
 class Rows:

@@ -1,21 +1,19 @@
-"""Weights and checkpoints on disk."""
+"""Weights of the layout model on disk."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
-from torch import Tensor, nn
+from torch import nn
 
-from pipeline.diffusion.codec import Normalisation
+from pipeline import taxonomy
+from pipeline.diffusion.codec import CHANNELS, Normalisation
 from pipeline.diffusion.inventory import Inventory
 from pipeline.diffusion.set_transformer import SetTransformer
-from pipeline.diffusion.settings import ModelSettings
+from pipeline.diffusion.settings import MOST_SLOTS, ModelSettings
 from pipeline.errors import ContentError
 from pipeline.manifest import canonical
-from pipeline.params import build
-from pipeline.tensors import load_state, load_tensors, save_tensors
+from pipeline.tensors import build_header, flatten, grouped, load_state, load_tensors, read_header, save_tensors
 
 FORMAT = "sfgen-denoiser-5"
 REMEDY = "run `make run`, or `dvc repro train`, which makes it"
@@ -31,6 +29,23 @@ class Header:
     model: ModelSettings
     inventory_width: int
 
+    def fault(self) -> str:
+        """Return what is wrong with it, "" where nothing is."""
+        norm, names = self.norm, self.norm.classes
+        tables = (norm.mean, norm.scale)
+        if any(not some or len(set(some)) < len(some) for some in (names, self.layouts)):
+            return "categories or room types are missing, or there twice"
+        if any(len(table) != len(names) or any(len(row) != CHANNELS for row in table) for table in tables):
+            return f"norm is no table of {len(names)} categories by {CHANNELS} channels"
+        if min(map(min, norm.scale)) <= 0:
+            return "norm has a deviation that is not above 0"
+        if not 1 <= self.slots <= MOST_SLOTS:
+            return f"slots is {self.slots}, not 1 to {MOST_SLOTS}"
+        shape = self.model
+        if min(self.inventory_width, *asdict(shape).values()) < 1 or shape.width % shape.heads:
+            return "no net has this shape"
+        return ""
+
 
 def build_net(header: Header) -> SetTransformer:
     """Build the net that a header describes."""
@@ -45,54 +60,26 @@ def build_inventory(header: Header) -> Inventory:
 def save_weights(path: Path, header: Header, nets: Mapping[str, nn.Module]) -> None:
     """Write the weights of a layout model: its `denoiser` and its `inventory`."""
     text = canonical({"format": FORMAT, **asdict(header)}).decode()
-    save_tensors(path, _flatten({name: net.state_dict() for name, net in nets.items()}), {"layout": text})
+    save_tensors(path, flatten({name: net.state_dict() for name, net in nets.items()}), {"layout": text})
 
 
 def load_weights(path: Path) -> tuple[SetTransformer, Inventory, Header]:
-    """Read a layout model. Raises ContentError when the file is missing, truncated, of another format, or holds what is no number."""
-    groups, value = _read(path, "layout")
-    try:
-        header = Header(
-            Normalisation.of_json(value["norm"]),
-            tuple(value["layouts"]),
-            value["slots"],
-            build(ModelSettings, value["model"], "train.model"),
-            value["inventory_width"],
-        )
-    except (KeyError, TypeError) as error:
-        raise ContentError(f"{path} does not hold a layout model ({FORMAT})", REMEDY) from error
+    """Read a layout model. Raises ContentError when the file is missing, truncated, of another format, or holds what is no number or describes no net."""
+    tensors, headers = load_tensors(path, REMEDY)
+    header = build_header(Header, read_header(path, headers, "layout", FORMAT, REMEDY), "layout", path, REMEDY)
+    if fault := header.fault():
+        raise ContentError(f"{path}: {fault}", REMEDY)
+    groups = grouped(path, tensors, REMEDY)
     denoiser, inventory = build_net(header), build_inventory(header)
     load_state(denoiser, groups.get("denoiser", {}), path, REMEDY)
     load_state(inventory, groups.get("inventory", {}), path, REMEDY)
     return denoiser.eval(), inventory.eval(), header
 
 
-def save_checkpoint(path: Path, digest: str, step: int, groups: Mapping[str, Mapping[str, Tensor]]) -> None:
-    """Write a checkpoint: named groups of tensors (weights, averages, moments), the step, and the digest of what it is of."""
-    save_tensors(path, _flatten(groups), {"checkpoint": canonical({"format": FORMAT, "digest": digest, "step": step}).decode()})
-
-
-def load_checkpoint(path: Path, digest: str) -> tuple[int, dict[str, dict[str, Tensor]]] | None:
-    """Read a checkpoint, or None where there is none, it is damaged, or of another digest: training then starts afresh."""
-    try:
-        groups, header = _read(path, "checkpoint")
-    except ContentError:
-        return None
-    return (int(header["step"]), groups) if header.get("digest") == digest else None
-
-
-def _flatten(groups: Mapping[str, Mapping[str, Tensor]]) -> dict[str, Tensor]:
-    return {f"{group}/{name}": value for group, state in groups.items() for name, value in state.items()}
-
-
-def _read(path: Path, key: str) -> tuple[dict[str, dict[str, Tensor]], dict[str, Any]]:
-    """Read groups of tensors, and what the header says under `key`."""
-    tensors, headers = load_tensors(path, REMEDY)
-    header = json.loads(headers.get(key, "{}"))
-    if header.get("format") != FORMAT:
-        raise ContentError(f"{path} is of another format than {FORMAT}", REMEDY)
-    groups: dict[str, dict[str, Tensor]] = {}
-    for name, value in tensors.items():
-        group, own = name.split("/", 1)
-        groups.setdefault(group, {})[own] = value
-    return groups, header
+def require_vocabulary(path: Path, header: Header, remedy: str = REMEDY) -> None:
+    """Raise ContentError where weights know other categories or room types than manifests/, or know them in another order."""
+    words = taxonomy.load()
+    for what, own, known in (("categories", header.norm.classes, words.names), ("room types", header.layouts, words.layout_types)):
+        if own != known:
+            odd = sorted(set(own) ^ set(known)) or ["their order"]
+            raise ContentError(f"{path} knows other {what} than the taxonomy: {', '.join(odd[:5])}", remedy)

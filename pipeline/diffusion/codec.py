@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import torch
@@ -48,11 +47,6 @@ class Normalisation:
         mean[:, :2], mean[:, YAW], scale[:, YAW] = 0.0, 0.0, 1.0
         scale[:, :2] = np.sqrt((continuous[:, :2] ** 2).mean())
         return cls(_round_table(mean), _round_table(scale), classes)
-
-    @classmethod
-    def of_json(cls, value: dict[str, Any]) -> Normalisation:
-        """Read what `dataclasses.asdict` wrote."""
-        return cls(tuple(map(tuple, value["mean"])), tuple(map(tuple, value["scale"])), tuple(value["classes"]))
 
 
 class Codec:

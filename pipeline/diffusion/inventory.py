@@ -20,6 +20,7 @@ from pipeline import seeds
 from pipeline.diffusion.context import CategoryBounds
 from pipeline.diffusion.floor import KINDS, Floor
 from pipeline.diffusion.settings import InventorySettings
+from pipeline.tensors import Checkpoint
 
 MOST = 12  # of one class in one room; more are counted as this
 ROOM_FEATURES = 6 + 2 * (len(KINDS) - 1)
@@ -175,12 +176,18 @@ def initial_inventory(contents: Holdings, types: int, width: int, seed: int) -> 
     return net
 
 
-def fit(net: Inventory, contents: Holdings, settings: InventorySettings, seed: int) -> Inventory:
-    """Train an inventory model in place on what rooms hold: AdamW, a cosine to zero. Every draw is keyed by `seed`."""
+def fit(
+    net: Inventory, contents: Holdings, settings: InventorySettings, seed: int, checkpoint: Checkpoint | None = None, every: int = 250
+) -> Inventory:
+    """Train an inventory model in place on what rooms hold: AdamW, a cosine to zero. Every draw is keyed by `seed`.
+
+    With a `checkpoint` it goes on from there, and is kept there `every` so many steps.
+    """
     rng = torch.Generator().manual_seed(seeds.key(seed, "inventory") % 2**63)
     features, layouts, counts = (torch.from_numpy(part) for part in contents)
     optimiser = torch.optim.AdamW(net.parameters(), weight_decay=1e-3)
-    for step in range(settings.steps):
+    done = checkpoint.resume(net, optimiser, rng) if checkpoint else 0
+    for step in range(done, settings.steps):
         for group in optimiser.param_groups:
             group["lr"] = settings.learning_rate * min(1.0, (step + 1) / 50) * 0.5 * (1 + float(np.cos(np.pi * step / settings.steps)))
         rows = torch.randint(len(features), (min(settings.batch, len(features)),), generator=rng)
@@ -190,6 +197,8 @@ def fit(net: Inventory, contents: Holdings, settings: InventorySettings, seed: i
         loss.backward()
         torch.nn.utils.clip_grad_norm_(net.parameters(), 1.0)
         optimiser.step()
+        if checkpoint and (step + 1) % every == 0:
+            checkpoint.keep(step + 1, net, optimiser, rng)
     return net.eval()
 
 

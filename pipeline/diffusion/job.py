@@ -11,7 +11,7 @@ import torch
 
 from pipeline import taxonomy
 from pipeline.diffusion.batch import collate
-from pipeline.diffusion.checkpoint import Header, load_checkpoint, load_weights
+from pipeline.diffusion.checkpoint import FORMAT, Header, load_weights, require_vocabulary
 from pipeline.diffusion.codec import Codec, Normalisation
 from pipeline.diffusion.inventory import Holdings, Inventory, counts_of, initial_inventory, room_features
 from pipeline.diffusion.process_group import ProcessGroup
@@ -21,14 +21,16 @@ from pipeline.diffusion.settings import TrainSettings
 from pipeline.diffusion.training import Rooms, Trainer
 from pipeline.errors import ContentError
 from pipeline.manifest import digest, sha256_file
+from pipeline.tensors import Checkpoint
 
 CHECKPOINT = "models/checkpoint/denoiser.safetensors"
+INVENTORY_CHECKPOINT = "models/checkpoint/inventory.safetensors"
 WEIGHTS = "models/denoiser.safetensors"
 RELEASED = "weights/denoiser.safetensors"
 
 
 class Job(NamedTuple):
-    """What one process trains: the state, the rooms, the rooms of the validation split; the inventory model as it begins."""
+    """What one process trains: the state, the rooms, the rooms of the validation split; the inventory model as it begins; where both are kept meanwhile."""
 
     trainer: Trainer
     data: Rooms
@@ -36,7 +38,8 @@ class Job(NamedTuple):
     sets: Sets
     header: Header
     inventory: Inventory
-    key: str
+    checkpoint: Checkpoint
+    inventory_checkpoint: Checkpoint
 
 
 def open_job(root: Path, settings: TrainSettings, seed: int, group: ProcessGroup) -> Job:
@@ -56,12 +59,12 @@ def open_job(root: Path, settings: TrainSettings, seed: int, group: ProcessGroup
     per_epoch = max(1, sum(len(e.classes) for e in sets.train) // settings.objects)
     total = settings.epochs * per_epoch if settings.epochs else settings.steps
     trainer = Trainer(seed, header, settings, total, per_epoch, device, group, start)
-    key = digest([asdict(settings), asdict(header), seed, threads, group.size, device.type, inputs(root, settings)])
-    checkpoint = load_checkpoint(root / CHECKPOINT, key)
-    if checkpoint:
-        trainer.restore(*checkpoint)
+    key = digest([FORMAT, asdict(settings), asdict(header), seed, threads, group.size, device.type, inputs(root, settings)])
+    checkpoint = Checkpoint(root / CHECKPOINT, key)
+    if found := checkpoint.load():
+        trainer.restore(*found)
     data, checked = (rooms_of(part, header, device) for part in (sets.train, sets.val or sets.train[:64]))
-    return Job(trainer, data, checked, sets, header, inventory, key)
+    return Job(trainer, data, checked, sets, header, inventory, checkpoint, Checkpoint(root / INVENTORY_CHECKPOINT, key))
 
 
 def load_released(path: Path, wanted: Header) -> tuple[SetTransformer, Inventory, Header]:
@@ -70,17 +73,13 @@ def load_released(path: Path, wanted: Header) -> tuple[SetTransformer, Inventory
     Their normalisation is kept: with another the same numbers would mean other rooms.
     """
     net, inventory, header = load_weights(path)
-    for name in ("layouts", "slots", "model", "inventory_width"):
+    for name in ("slots", "model", "inventory_width"):
         if getattr(header, name) != getattr(wanted, name):
             raise ContentError(
-                f"{path} was trained with other {name} ({getattr(header, name)}) than params.yaml and the taxonomy say ({getattr(wanted, name)})",
+                f"{path} was trained with other {name} ({getattr(header, name)}) than params.yaml says ({getattr(wanted, name)})",
                 "set train.start: scratch in params.yaml, or these numbers",
             )
-    if header.norm.classes != wanted.norm.classes:
-        odd = sorted(set(header.norm.classes) ^ set(wanted.norm.classes)) or ["their order"]
-        raise ContentError(
-            f"{path} knows other categories than the taxonomy: {', '.join(odd[:5])}", "set train.start: scratch in params.yaml"
-        )
+    require_vocabulary(path, header, "set train.start: scratch in params.yaml")
     return net, inventory, header
 
 

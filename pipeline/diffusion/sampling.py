@@ -22,12 +22,12 @@ from pipeline.diffusion.guidance import Guide
 from pipeline.diffusion.inventory import DRAWS, Ask, Inventory, draw_inventories, room_features
 from pipeline.diffusion.schedule import denoise, levels, paper_levels
 from pipeline.diffusion.set_transformer import FEW, SetTransformer
-from pipeline.diffusion.settings import SampleSettings
+from pipeline.diffusion.settings import MOST_SLOTS, SampleSettings
 from pipeline.errors import ContentError
 
 Key = tuple[int, int, int]  # home index, room number, attempt
 # Slots and floor tokens that the rooms of a batch are padded to: few shapes, for an evaluation costs more by its operations than by its rooms.
-SLOTS, TOKENS = (6, 12, 24, 32), (16, 32)
+SLOTS, TOKENS = (6, 12, 24, MOST_SLOTS), (16, 32)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,10 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
+from pipeline.errors import ContentError
+
 Articulation = Literal["none", "heuristic", "joints"]
+MOST_SLOTS = 32  # objects that rooms are padded to at most, in training and sampling
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +68,10 @@ class TrainSettings:
     validate_every: int = 500
     threads: int = 1  # torch threads of each process, part of the checkpoint's digest; 0: one per core
     workers: int = 0  # processes that share each batch, on machines without a GPU; 0: one per core
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.slots <= MOST_SLOTS:
+            raise ContentError(f"train.slots is {self.slots}", f"give 1 to {MOST_SLOTS} in params.yaml")
 
 
 @dataclass(frozen=True, slots=True)

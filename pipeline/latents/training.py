@@ -9,6 +9,9 @@ from torch import Tensor
 
 from pipeline import seeds
 from pipeline.latents.vae import EncodeSettings, PointVae, chamfer, kl_to_standard_normal
+from pipeline.tensors import Checkpoint
+
+EVERY = 50  # steps between checkpoints: some five seconds of work
 
 
 class Step(NamedTuple):
@@ -26,15 +29,18 @@ def init_vae(seed: int, settings: EncodeSettings) -> PointVae:
         return PointVae.of(settings)
 
 
-def train(seed: int, net: PointVae, clouds: Tensor, settings: EncodeSettings, device: torch.device) -> Iterator[Step]:
+def train(
+    seed: int, net: PointVae, clouds: Tensor, settings: EncodeSettings, device: torch.device, checkpoint: Checkpoint | None = None
+) -> Iterator[Step]:
     """Train `net` in place on clouds (M, P, 3): Chamfer + 0.001 KL; the learning rate falls as a cosine to zero.
 
-    Every step draws from a generator of its own, keyed by (seed, step).
+    Every step draws from a generator of its own, keyed by (seed, step). With a `checkpoint` it goes on from there, and yields no step that was taken before.
     """
     net.to(device).train()
     clouds = clouds.to(device)
     optimiser = torch.optim.Adam(net.parameters(), lr=settings.learning_rate)
-    for step in range(settings.steps):
+    done = checkpoint.resume(net, optimiser) if checkpoint else 0
+    for step in range(done, settings.steps):
         rng = torch.Generator().manual_seed(seeds.key(seed, "vae-step", step) % 2**63)
         rows = torch.randint(len(clouds), (settings.batch,), generator=rng).to(device)
         subset = torch.randperm(clouds.shape[1], generator=rng)[: settings.train_points].to(device)
@@ -49,6 +55,8 @@ def train(seed: int, net: PointVae, clouds: Tensor, settings: EncodeSettings, de
         (distance + settings.kl_weight * kl).backward()
         torch.nn.utils.clip_grad_norm_(net.parameters(), 1.0)
         optimiser.step()
+        if checkpoint and (step + 1) % EVERY == 0:
+            checkpoint.keep(step + 1, net, optimiser)
         yield Step(step, float(distance.detach()), float(kl.detach()))
     net.eval()
 

@@ -5,7 +5,6 @@ Shapes: clouds (B, P, 3) in the cube [-0.5, 0.5]^3; mean and log-variance (B, 32
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal
@@ -15,11 +14,11 @@ from torch import Tensor, nn
 
 from pipeline.errors import ContentError
 from pipeline.manifest import canonical
-from pipeline.params import build
-from pipeline.tensors import load_state, load_tensors, save_tensors
+from pipeline.tensors import build_header, load_state, load_tensors, read_header, save_tensors
 
 FORMAT = "sfgen-vae-1"
 REMEDY = "run `dvc repro encode`"
+COUNTS = ("points", "train_points", "decoded_points", "width", "latent", "batch")  # settings of which there must be some
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +36,10 @@ class EncodeSettings:
     learning_rate: float = 3e-3
     kl_weight: float = 0.001
     threads: int = 0  # torch threads, part of the digest; 0: all cores
+
+    def __post_init__(self) -> None:
+        if low := [name for name in COUNTS if getattr(self, name) < 1]:
+            raise ContentError(f"encode.{low[0]} is {getattr(self, low[0])}", "give 1 or more")
 
 
 class Encoder(nn.Module):
@@ -116,12 +119,10 @@ def save_vae(path: Path, net: PointVae, settings: EncodeSettings) -> None:
 
 
 def load_vae(path: Path) -> tuple[PointVae, EncodeSettings]:
-    """Read the weights. Raises ContentError when the file is missing, truncated or of another format."""
+    """Read the weights. Raises ContentError when the file is missing, truncated, of another format, or tells no settings that a net can have."""
     tensors, headers = load_tensors(path, REMEDY)
-    header = json.loads(headers.get("vae", "{}"))
-    if header.get("format") != FORMAT:
-        raise ContentError(f"{path} does not hold the shape encoder ({FORMAT})", REMEDY)
-    settings = build(EncodeSettings, header["settings"], "encode")
+    header = read_header(path, headers, "vae", FORMAT, REMEDY)
+    settings = build_header(EncodeSettings, header.get("settings"), "settings", path, REMEDY)
     net = PointVae.of(settings)
     load_state(net, tensors, path, REMEDY)
     return net.eval(), settings

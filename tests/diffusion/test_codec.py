@@ -5,6 +5,7 @@ from json import dumps, loads
 import numpy as np
 import torch
 
+from pipeline import params
 from pipeline.diffusion.codec import CHANNELS, SIZE, YAW, Codec, Normalisation
 from pipeline.diffusion.rooms import stacked
 from tests.diffusion.small_world import CLASSES, make_context
@@ -40,7 +41,7 @@ def test_a_class_without_objects_has_finite_constants(examples):
 
 
 def test_the_constants_survive_json(norm):
-    assert Normalisation.of_json(loads(dumps(asdict(norm)))) == norm
+    assert params.build(Normalisation, loads(dumps(asdict(norm))), "norm") == norm
 
 
 def test_proposals_are_what_was_encoded(examples, norm):

@@ -1,10 +1,14 @@
+import json
+import math
 from dataclasses import replace
 
 import pytest
 import torch
+from safetensors import safe_open
 
+from pipeline import taxonomy
 from pipeline.diffusion.batch import collate
-from pipeline.diffusion.checkpoint import Header, build_inventory, load_checkpoint, load_weights, save_checkpoint, save_weights
+from pipeline.diffusion.checkpoint import Header, build_inventory, load_weights, require_vocabulary, save_weights
 from pipeline.diffusion.codec import Codec
 from pipeline.diffusion.job import rooms_of
 from pipeline.diffusion.loss import constraint_descent, denoising_loss, draw
@@ -12,6 +16,7 @@ from pipeline.diffusion.rooms import layout_weights
 from pipeline.diffusion.settings import ModelSettings, TrainSettings
 from pipeline.diffusion.training import Trainer, train, validation
 from pipeline.errors import ContentError
+from pipeline.tensors import Checkpoint, save_tensors
 from tests.diffusion.small_world import LAYOUTS, make_examples
 
 CPU = torch.device("cpu")
@@ -47,11 +52,11 @@ def same(a, b):
 
 def test_a_resumed_run_equals_an_undisturbed_one_bit_for_bit(header, data, tmp_path):
     whole = trained(header, data, 6)
-    path = tmp_path / "checkpoint.safetensors"
+    checkpoint = Checkpoint(tmp_path / "checkpoint.safetensors", "digest")
     half = trained(header, data, 3)
-    save_checkpoint(path, "digest", half.done, half.groups())
+    checkpoint.save(half.done, half.groups())
     resumed = Trainer(0, header, SETTINGS, SETTINGS.steps, 3, CPU)
-    resumed.restore(*load_checkpoint(path, "digest"))
+    resumed.restore(*checkpoint.load())
     list(train(resumed, data))
     assert resumed.done == whole.done == 6
     assert not same(whole.net, half.net)
@@ -61,12 +66,13 @@ def test_a_resumed_run_equals_an_undisturbed_one_bit_for_bit(header, data, tmp_p
 
 def test_a_checkpoint_of_something_else_or_damaged_starts_afresh(header, data, tmp_path):
     path = tmp_path / "checkpoint.safetensors"
-    assert load_checkpoint(path, "digest") is None
-    save_checkpoint(path, "digest", 1, trained(header, data, 1).groups())
-    assert load_checkpoint(path, "digest")[0] == 1
-    assert load_checkpoint(path, "other") is None
+    checkpoint = Checkpoint(path, "digest")
+    assert checkpoint.load() is None
+    checkpoint.save(1, trained(header, data, 1).groups())
+    assert checkpoint.load()[0] == 1
+    assert Checkpoint(path, "other").load() is None
     path.write_bytes(path.read_bytes()[:1000])
-    assert load_checkpoint(path, "digest") is None
+    assert checkpoint.load() is None
 
 
 def test_checkpoints_are_written_when_due_and_at_the_end(header, data):
@@ -92,7 +98,7 @@ def test_bad_weights_are_named(header, data, tmp_path, spoil):
         save_weights(path, header, nets)
         path.write_bytes(path.read_bytes()[:500])
     if spoil == "vae":
-        save_checkpoint(path, "x", 0, {})
+        Checkpoint(path, "x").save(0, {})
     if spoil == "no number":
         with torch.no_grad():
             nets["inventory"].out.bias[0] = torch.nan
@@ -101,6 +107,86 @@ def test_bad_weights_are_named(header, data, tmp_path, spoil):
         save_weights(path, replace(header, model=replace(header.model, width=64)), nets)
     with pytest.raises(ContentError, match=r"w\.safetensors"):
         load_weights(path)
+
+
+def rewritten(path, change):
+    """Let `change` edit what the weights' header says (a dict), or return a text to be there instead."""
+    with safe_open(path, "pt") as handle:
+        tensors, said = {name: handle.get_tensor(name) for name in handle.keys()}, json.loads(handle.metadata()["layout"])  # noqa: SIM118
+    text = change(said)
+    save_tensors(path, tensors, {"layout": text if isinstance(text, str) else json.dumps(said)})
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        (lambda h: "{", "JSON"),
+        (lambda h: "[" * 100_000, "JSON"),
+        (lambda h: "[1]", "format"),
+        (lambda h: json.dumps({**h, "format": "sfgen-denoiser-3"}), "format"),
+        (lambda h: h.pop("norm"), "layout.norm is missing"),
+        (lambda h: h["norm"]["mean"][1].__setitem__(3, math.nan), "mean"),
+        (lambda h: h["norm"]["scale"][1].__setitem__(3, math.inf), "scale"),
+        (lambda h: h["norm"]["scale"][1].__setitem__(3, 0.0), "deviation"),
+        (lambda h: h["norm"]["scale"][0].__setitem__(3, -1.0), "deviation"),
+        (lambda h: h["norm"]["mean"][2].pop() and None, "norm"),
+        (lambda h: h["norm"]["scale"].pop() and None, "norm"),
+        (lambda h: h["norm"]["mean"][0].__setitem__(0, "far"), "mean"),
+        (lambda h: h["norm"].__setitem__("mean", 7), "mean"),
+        (lambda h: h["norm"]["classes"].__setitem__(0, h["norm"]["classes"][1]), "twice"),
+        (lambda h: h["norm"].update(classes=[], mean=[], scale=[]), "missing"),
+        (lambda h: h.update(layouts=[]), "missing"),
+        (lambda h: h.update(layouts="bedroom"), "layouts"),
+        (lambda h: h.update(slots="many"), "slots"),
+        (lambda h: h.update(slots=-1), "slots"),
+        (lambda h: h.update(slots=10**9), "slots"),
+        (lambda h: h.update(inventory_width=0), "shape"),
+        (lambda h: h["model"].update(heads=3), "shape"),
+        (lambda h: h["model"].update(width=-32), "shape"),
+        (lambda h: h["model"].update(depth=2), "model.depth"),
+        (lambda h: h.update(more=1), "layout.more"),
+    ],
+)
+def test_a_header_that_describes_no_model_is_named(header, data, tmp_path, change, word):
+    path = tmp_path / "w.safetensors"
+    save_weights(path, header, {"denoiser": trained(header, data, 1).net, "inventory": build_inventory(header)})
+    rewritten(path, change)
+    with pytest.raises(ContentError, match=r"w\.safetensors") as refused:
+        load_weights(path)
+    assert word in refused.value.message
+    assert "params.yaml" not in str(refused.value)
+    assert "dvc repro train" in refused.value.remedy
+
+
+def test_a_tensor_of_no_net_is_named(header, tmp_path):
+    path = tmp_path / "w.safetensors"
+    save_weights(path, header, {})
+    rewritten(path, lambda h: None)
+    with safe_open(path, "pt") as handle:
+        said = handle.metadata()
+    save_tensors(path, {"stray": torch.zeros(1)}, said)
+    with pytest.raises(ContentError, match="stray"):
+        load_weights(path)
+
+
+def test_weights_of_another_vocabulary_are_named(header, tmp_path):
+    words = taxonomy.load()
+    norm = replace(header.norm, classes=words.names)
+    same_words = replace(header, norm=norm, layouts=words.layout_types)
+    require_vocabulary(tmp_path, same_words)
+    for other, word in (
+        (replace(same_words, norm=replace(norm, classes=(*words.names[1:], "anvil"))), "anvil"),
+        (replace(same_words, norm=replace(norm, classes=words.names[::-1])), "order"),
+        (replace(same_words, layouts=words.layout_types[1:]), words.layout_types[0]),
+    ):
+        with pytest.raises(ContentError, match=word):
+            require_vocabulary(tmp_path / "w.safetensors", other)
+
+
+def test_more_slots_than_rooms_are_padded_to_are_refused():
+    for slots in (0, -1, 33):
+        with pytest.raises(ContentError, match=r"train\.slots"):
+            TrainSettings(slots=slots)
 
 
 def test_it_learns(header, data):

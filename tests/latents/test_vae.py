@@ -8,6 +8,7 @@ from pipeline import seeds
 from pipeline.errors import ContentError
 from pipeline.latents.training import encode, init_vae, train
 from pipeline.latents.vae import EncodeSettings, chamfer, kl_to_standard_normal, load_vae, save_vae
+from pipeline.tensors import save_tensors
 
 CPU = torch.device("cpu")
 SMALL = EncodeSettings(points=128, train_points=96, decoded_points=64, width=16, steps=60, batch=8)
@@ -82,4 +83,40 @@ def test_bad_weights_are_named(tmp_path, content):
     if content is not None:
         (tmp_path / "vae.safetensors").write_bytes(content)
     with pytest.raises(ContentError, match=r"vae\.safetensors"):
+        load_vae(tmp_path / "vae.safetensors")
+
+
+@pytest.mark.parametrize(
+    ("header", "word"),
+    [
+        ("{", "JSON"),
+        ("[]", "format"),
+        ('"sfgen-vae-1"', "format"),
+        ('{"format": "sfgen-vae-2", "settings": {}}', "format"),
+        ('{"format": "sfgen-vae-1"}', "settings"),
+        ('{"format": "sfgen-vae-1", "settings": [1]}', "settings"),
+        ('{"format": "sfgen-vae-1", "settings": {"width": "wide"}}', "settings.width"),
+        ('{"format": "sfgen-vae-1", "settings": {"widht": 16}}', "settings.widht"),
+        ('{"format": "sfgen-vae-1", "settings": {"learning_rate": NaN}}', "settings.learning_rate"),
+        ('{"format": "sfgen-vae-1", "settings": {"width": 0}}', "width"),
+        ('{"format": "sfgen-vae-1", "settings": {"latent": -1}}', "latent"),
+        ('{"format": "sfgen-vae-1", "settings": {"width": 8}}', "fit"),
+    ],
+)
+def test_a_header_that_describes_no_encoder_is_named(tmp_path, header, word):
+    path = tmp_path / "vae.safetensors"
+    save_tensors(path, init_vae(3, SMALL).state_dict(), {"vae": header})
+    with pytest.raises(ContentError, match=r"vae\.safetensors") as refused:
+        load_vae(path)
+    assert word in refused.value.message
+    assert "params.yaml" not in str(refused.value)
+    assert "dvc repro encode" in refused.value.remedy
+
+
+def test_an_encoder_with_what_is_no_number_is_named(tmp_path):
+    net = init_vae(3, SMALL)
+    with torch.no_grad():
+        net.decoder.net[0].bias[0] = torch.inf
+    save_vae(tmp_path / "vae.safetensors", net, SMALL)
+    with pytest.raises(ContentError, match=r"vae\.safetensors.*decoder"):
         load_vae(tmp_path / "vae.safetensors")

@@ -6,8 +6,10 @@ import pytest
 from pipeline import params, seeds, tables
 from pipeline.entities.files import load_asset, save_asset
 from pipeline.errors import ContentError
+from pipeline.latents import training
 from pipeline.latents.vae import load_vae
 from pipeline.rendering.surface_colour import finish_of
+from pipeline.tensors import Checkpoint
 from schemas import ASSETS, LATENTS
 from stages import encode
 from tests.latents.test_surface import box_asset
@@ -76,6 +78,46 @@ def test_it_is_reproducible(root, tmp_path):
     encode.main(tmp_path)
     for name in ("data/latents/latents.parquet", "models/vae.safetensors", "metrics/encode.json"):
         assert (tmp_path / name).read_bytes() == (root / name).read_bytes()
+
+
+def test_a_killed_training_goes_on_and_ends_as_an_undisturbed_one(root, tmp_path, monkeypatch):
+    class KilledError(Exception):
+        pass
+
+    def dies(self, step, groups):
+        saved(self, step, groups)
+        steps.append(step)
+        if len(steps) == 2:
+            raise KilledError
+
+    make_root(tmp_path)
+    saved, steps = Checkpoint.save, []
+    monkeypatch.setattr(training, "EVERY", 4)
+    monkeypatch.setattr(Checkpoint, "save", dies)
+    with pytest.raises(KilledError):
+        encode.main(tmp_path)
+    assert not (tmp_path / "models/vae.safetensors").exists()
+    encode.main(tmp_path)
+    assert steps == [4, 8, 12]  # 1 to 8 were not taken again
+    assert not (tmp_path / encode.CHECKPOINT).exists()
+    for name in ("data/latents/latents.parquet", "models/vae.safetensors", "metrics/encode.json"):
+        assert (tmp_path / name).read_bytes() == (root / name).read_bytes()
+
+
+def test_a_checkpoint_of_other_shapes_is_not_taken_up(tmp_path, monkeypatch):
+    """What the second run makes is what it makes without the checkpoint of the first."""
+    monkeypatch.setattr(training, "EVERY", 4)
+    monkeypatch.setattr(encode, "save_vae", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    make_root(tmp_path, 10)
+    with pytest.raises(KeyboardInterrupt):
+        encode.main(tmp_path)
+    assert (tmp_path / encode.CHECKPOINT).exists()
+    monkeypatch.undo()
+    make_root(tmp_path, 7)
+    encode.main(tmp_path)
+    make_root(tmp_path / "clean", 7)
+    encode.main(tmp_path / "clean")
+    assert (tmp_path / "models/vae.safetensors").read_bytes() == (tmp_path / "clean/models/vae.safetensors").read_bytes()
 
 
 def test_the_weights_load(root):

@@ -11,6 +11,7 @@ from pipeline.diffusion.context import RoomContext
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.errors import ContentError
+from pipeline.tensors import Checkpoint
 from schemas import ASSET_JOINTS, LATENTS, OBJECTS, OPENINGS, ROOMS, SCENES
 from schemas.table import Table
 from stages import train
@@ -99,25 +100,33 @@ def test_the_model_furnishes_a_room(root):
     assert len(found) == 3
 
 
-def test_a_killed_run_goes_on_and_ends_as_an_undisturbed_one(root, tmp_path, monkeypatch):
+@pytest.mark.parametrize(("net", "kill", "after"), [("denoiser", 2, [4]), ("inventory", 6, [8, 10, 12, 14, 16, 18, 20])])
+def test_a_killed_run_goes_on_and_ends_as_an_undisturbed_one(root, tmp_path, monkeypatch, net, kill, after):
     make_root(tmp_path)
 
     class KilledError(Exception):
         pass
 
-    def dies(*args):
-        saved(*args)
-        raise KilledError
+    def dies(self, step, groups):
+        saved(self, step, groups)
+        if (self.path.stem, step) == (net, kill):
+            raise KilledError
 
-    saved = train.save_checkpoint
-    monkeypatch.setattr(train, "save_checkpoint", dies)
+    saved = Checkpoint.save
+    monkeypatch.setattr(Checkpoint, "save", dies)
     with pytest.raises(KilledError):
         train.main(tmp_path)
     assert not (tmp_path / "models/denoiser.safetensors").exists()
-    done = []
-    monkeypatch.setattr(train, "save_checkpoint", lambda path, key, step, groups: (done.append(step), saved(path, key, step, groups)))
+    done = {"denoiser": [], "inventory": []}
+
+    def counted(self, step, groups):
+        done[self.path.stem].append(step)
+        saved(self, step, groups)
+
+    monkeypatch.setattr(Checkpoint, "save", counted)
     train.main(tmp_path)
-    assert done == [4]  # steps 1 and 2 were not taken again
+    assert done[net] == after  # no step was taken again
+    assert not (tmp_path / "models/checkpoint/inventory.safetensors").exists()
     for name in ("models/denoiser.safetensors", "metrics/train.json"):
         assert (tmp_path / name).read_bytes() == (root / name).read_bytes()
 
