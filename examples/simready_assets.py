@@ -2,8 +2,9 @@
 
     python examples/simready_assets.py DATASET --out DIR --author "A. Person" [--assets ASSET_ID ...]
 
-Each lies as OUT/<asset_id>/usd/<asset_id>.usda, the one USD file of its folder (rule NP.005), its payload in payloads/ beside it; a JSON
-file of the same name holds the fields of provenance that the asset itself does not (rule SR.004). Without ids all assets whose item of
+Each lies as OUT/<asset_id>/usd/<asset_id>.usda, the one USD file of its folder (rule NP.005), its payload in payloads/ beside it, what MuJoCo
+reads as runnables/physics/mujoco.usda (RV.008). The interface says the date (SR.001); a JSON file of the same name holds the fields of
+provenance that the asset itself does not (SR.004). Without ids all assets whose item of
 Wikidata is known. `simready-validate --profile Robotics-Prop --version 4.0.0 OUT/<asset_id>/usd/<asset_id>.usda` looks at one.
 """
 
@@ -17,6 +18,7 @@ from pxr import Sdf, UsdUtils
 
 ITEMS = {"cabinet": "Q14745", "stool": "Q14745", "appliance": "Q212920"}  # furniture, home appliance; others have a label of their own
 ASIDE = (".thumbs", "runnables")  # folders that stay beside the interface
+RUNTIME = "runnables/physics"
 
 
 def main() -> None:
@@ -47,10 +49,16 @@ def package(asset: Path, out: Path, author: str, day: dt.date) -> Path | None:
     (folder / "payloads" / f"{asset.name}.usda").unlink()
     moved = Sdf.Layer.CreateAnonymous(".usda")
     moved.TransferContent(interface)
-    UsdUtils.ModifyAssetPaths(moved, lambda path: path if path.startswith(f"./{ASIDE[1]}/") else f"./payloads/{path.removeprefix('./')}")
+    moved.customLayerData = {**moved.customLayerData, "usd_date_generated": day.isoformat()}
+    own = f"{RUNTIME}/{asset.name}_mujoco.usda"  # in a dataset named after its asset: packed together, files of one name would be one
+    if (folder / own).is_file():
+        (folder / own).rename(folder / RUNTIME / "mujoco.usda")
+    UsdUtils.ModifyAssetPaths(
+        moved, lambda path: f"./{RUNTIME}/mujoco.usda" if path == f"./{own}" else f"./payloads/{path.removeprefix('./')}"
+    )
     path = folder / f"{asset.name}.usda"
     moved.Export(str(path))
-    path.with_suffix(".json").write_text(json.dumps({"author": author, "qcode": item, "usd_date_generated": day.isoformat()}, indent=1))
+    path.with_suffix(".json").write_text(json.dumps({"author": author, "qcode": item}, indent=1))
     return path
 
 

@@ -107,5 +107,11 @@ def _about(asset: Asset) -> dict[str, Any]:
             "collider_count": sum(len(link.colliders) for link in asset.links),
             "mass": float(sum(link.mass for link in asset.links)),
             "asset_extents": Gf.Vec3f(*map(float, high - low)),
+            **({"Variants": _variants(asset)} if asset.articulated else {}),
         },
     }
+
+
+def _variants(asset: Asset) -> dict[str, Any]:
+    """Return where the variant of each runtime is turned on, for who looks for it without composing anything."""
+    return {"Physics": {VARIANT_SET: {"prim": f"/{asset.asset_id}", "variantSetName": VARIANT_SET, "activateOption": "Enabled"}}}

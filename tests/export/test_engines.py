@@ -1,8 +1,11 @@
-"""Programs that share no code with us take the exported files: MuJoCo steps them, yourdfpy, SAPIEN and trimesh load them."""
+"""Programs that share no code with us take the exported files: MuJoCo steps them, yourdfpy, SAPIEN and trimesh load them, Khronos's validator reads them."""
 
 import json
+import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,6 +27,44 @@ def test_mujoco_steps_a_home_and_nothing_moves(export):
     _, turned, moved = steps(export("mjcf"), 1.0)
     assert turned < 0.005
     assert moved < 0.005
+
+
+KHRONOS = """
+const fs = require("fs"), path = require("path"), [folder, file] = process.argv.slice(1);
+const validator = require(path.join(folder, "node_modules", "gltf-validator"));
+validator.validateBytes(new Uint8Array(fs.readFileSync(file)), {maxIssues: 0}).then(said => console.log(JSON.stringify(said)));
+"""
+
+
+def khronos(path):
+    """Return what the Khronos glTF validator reports of a file; skips where it is not to be had."""
+    folder = os.environ.get("SFGEN_GLTF_VALIDATOR", "")
+    if not shutil.which("node") or not Path(folder, "node_modules", "gltf-validator").is_dir():
+        pytest.skip("SFGEN_GLTF_VALIDATOR names no folder in which `npm install gltf-validator@2.0.0-dev.3.10` ran, or there is no node")
+    done = subprocess.run(["node", "-e", KHRONOS, str(Path(folder).resolve()), str(path)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_khronos_finds_no_error_and_no_warning_in_a_glb(export):
+    said = khronos(export("glb"))
+    assert said["info"]["totalTriangleCount"] > 1000  # it has read the home
+    issues = said["issues"]
+    assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues["messages"]
+
+
+def test_khronos_finds_what_is_wrong(export, tmp_path):
+    """A home whose first triangle points beyond its vertices."""
+    data = bytearray(export("glb").read_bytes())
+    length = int.from_bytes(data[12:16], "little")
+    document = json.loads(data[20 : 20 + length])
+    accessor = document["accessors"][document["meshes"][0]["primitives"][0]["indices"]]
+    start = 28 + length + document["bufferViews"][accessor["bufferView"]]["byteOffset"]
+    data[start : start + 4] = (10**6).to_bytes(4, "little")
+    (tmp_path / "broken.glb").write_bytes(data)
+    issues = khronos(tmp_path / "broken.glb")["issues"]
+    assert issues["numErrors"] > 0
+    assert "ACCESSOR_INDEX_OOB" in {message["code"] for message in issues["messages"]}
 
 
 DECODED = """

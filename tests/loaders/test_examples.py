@@ -5,6 +5,7 @@ import re
 import runpy
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -55,10 +56,29 @@ def exported(furnished, tmp_path_factory):
     return export
 
 
-def test_mujoco_homes(exported):
+def test_mujoco_homes(exported, tmp_path):
+    """Two homes at once, each with its own joints."""
     pytest.importorskip("mujoco")
-    said = run("mujoco_homes.py", exported("mjcf"))
-    assert "1 homes, 16 joints" in said  # fourteen that move, two things that lie free
+    folder = exported("mjcf")
+    _export_another(folder, tmp_path)
+    said = run("mujoco_homes.py", folder)
+    assert "2 homes, 23 joints" in said  # 14 that move, 2 things that lie free; 7 that move
+    assert len(moved := [float(value) for value in re.findall(r"moved most stands at ([\d.]+)", said)]) == 2
+    assert max(moved) < 0.005
+
+
+def _export_another(folder, place):
+    """Put a home with a cabinet and a chair beside the furnished one's export."""
+    from pipeline.export import ExportFolder, export_home
+    from pipeline.usd import write_home, write_library, write_mujoco_overlay
+    from tests.usd.conftest import make_home
+
+    home, assets = make_home()
+    home = replace(home, scene_id="s0_00000001", placements=tuple(p for p in home.placements if p.object_id in {"cabinet_0", "chair_0"}))
+    write_library(assets.values(), place / "assets")
+    stage = write_home(home, assets, place / "usd" / "shard-00000" / f"{home.scene_id}.usdc")
+    write_mujoco_overlay(stage)
+    export_home(ExportFolder(folder, "mjcf", "d", "CC0-1.0"), stage, home.scene_id)
 
 
 def test_mujoco_robot(furnished, exported):
@@ -81,6 +101,37 @@ def test_sapien_home(exported):
     moved = float(re.search(r"none has moved more than ([\d.]+)", said)[1])
     assert "cabinet_0: drawer_slide 0.35" in said
     assert moved < 0.005
+
+
+def test_sapien_takes_pairs_that_pass_and_friction_as_the_urdf_means_them(exported):
+    """SAPIEN's own loader lets parts of different things pass each other, and gives every joint the same friction."""
+    sapien = pytest.importorskip("sapien")
+    example = runpy.run_path(str(ROOT / "examples" / "sapien_home.py"))
+    home = next(exported("urdf").glob("homes/*/home.json"))
+    scene = sapien.Scene([sapien.physx.PhysxCpuSystem()])  # things live as long as it does
+    placed = example["load"](scene, home, example["Unseen"])
+    things = {name: thing for name, thing in placed.items() if isinstance(thing, sapien.physx.PhysxArticulation)}
+    same = {
+        name: {shape.get_collision_groups()[3] for link in thing.links for shape in link.get_collision_shapes()}
+        for name, thing in things.items()
+    }
+    assert len(set.union(*same.values())) == sum(map(len, same.values())) == len(things) > 4
+    slide = things["cabinet_0"].find_joint_by_name("drawer_slide")
+    resistance = re.search(
+        rf'<joint name="{slide.name}".*?friction="([^"]+)"', (home.parents[2] / "assets/cabinet_a/cabinet_a.urdf").read_text(), re.DOTALL
+    )
+    assert slide.friction == pytest.approx(float(resistance[1]) / (9.81 * slide.child_link.mass))
+
+
+def test_maniskill_home(furnished, exported):
+    """It rests with a robot before the drawer, comes out when pulled, and is shut by a reset."""
+    pytest.importorskip("mani_skill")
+    said = run("maniskill_home.py", furnished, exported("urdf"))
+    rested, pulled, again = map(float, re.findall(r"is open by ([\d.-]+)", said))
+    assert abs(rested) < 0.005
+    assert pulled > 0.95
+    assert again == 0
+    assert "success True" in said
 
 
 def test_newton_home(furnished):

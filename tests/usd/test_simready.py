@@ -8,7 +8,7 @@ import runpy
 from pathlib import Path
 
 import pytest
-from pxr import Usd
+from pxr import Sdf, Usd
 
 from pipeline.usd import write_library
 from pipeline.usd.check import check_stage
@@ -45,5 +45,16 @@ def test_every_field_of_provenance_is_said_once(packaged):
     about = stage.GetRootLayer().customLayerData
     within, beside = {**about, **about["SimReady_Metadata"]}, json.loads(path.with_suffix(".json").read_text())
     assert all(within[name] for name in OWN)
-    assert beside == {"author": "somebody", "qcode": "Q14745", "usd_date_generated": "2026-11-23"}
+    assert about["usd_date_generated"] == "2026-11-23"
+    assert beside == {"author": "somebody", "qcode": "Q14745"}
     assert not set(within) & set(beside)
+
+
+def test_the_variant_is_where_the_metadata_says_it_is_and_its_file_has_the_runtime_s_name(packaged):
+    asset, path = packaged
+    for interface, file in ((asset / f"{asset.name}.usda", f"{asset.name}_mujoco.usda"), (path, "mujoco.usda")):
+        layer = Sdf.Layer.FindOrOpen(str(interface))
+        said = layer.customLayerData["SimReady_Metadata"]["Variants"]["Physics"]["MuJoCo"]
+        variant = layer.GetPrimAtPath(said["prim"]).variantSets[said["variantSetName"]].variants[said["activateOption"]]
+        assert [arc.assetPath for arc in variant.primSpec.payloadList.prependedItems] == [f"./runnables/physics/{file}"]
+        assert [p.name for p in (interface.parent / "runnables/physics").iterdir()] == [file]
