@@ -31,18 +31,14 @@ WEIGHTS = ROOT / "weights" / "denoiser.safetensors"
 Solve = Callable[[Expect, Shift, Noise, Sequence[float], float], Tensor]
 
 
-def multistep(expect: Expect, steer: Shift, noise: Noise, at_levels: Sequence[float], eta: float) -> Tensor:
-    """DPM-Solver++(2M) (Lu et al. 2022) where `eta` is 0, its stochastic form where it is 1."""
-    x, before, step_before = noise(), None, 1.0
+def first_order(expect: Expect, steer: Shift, noise: Noise, at_levels: Sequence[float], eta: float) -> Tensor:
+    """DDIM (Song et al. 2021) where `eta` is 0, DDPM's ancestral step between levels of any distance where it is 1."""
+    x = noise()
     for level, following in pairwise(at_levels):
-        x0, step = steer(expect(x, level), level), (following - level) / 2
-        (_, sigma), (alpha_next, sigma_next) = alpha_sigma_of(level), alpha_sigma_of(following)
-        ahead = x0 if before is None else x0 + step / (2 * step_before) * (x0 - before)
-        kept = math.exp(-step) if eta else 1.0
-        pulled = -math.expm1(-2 * step) if eta else -math.expm1(-step)
-        fresh = sigma_next * math.sqrt(-math.expm1(-2 * step)) if eta else 0.0
-        x = sigma_next / sigma * kept * x + alpha_next * pulled * ahead + fresh * noise()
-        before, step_before = x0, step
+        x0 = steer(expect(x, level), level)
+        (alpha, sigma), (alpha_next, sigma_next) = alpha_sigma_of(level), alpha_sigma_of(following)
+        fresh = eta * sigma_next * math.sqrt(-math.expm1(level - following))
+        x = alpha_next * x0 + math.sqrt(max(sigma_next**2 - fresh**2, 0.0)) * (x - alpha * x0) / sigma + fresh * noise()
     return steer(expect(x, at_levels[-1]), at_levels[-1])
 
 
@@ -81,19 +77,19 @@ class Solver:
     levels: Callable[[int], tuple[float, ...]] = levels
 
 
-def ancestral(eta: float) -> Solve:
-    """Return the sampler's own solver at an eta."""
-    return lambda expect, steer, noise, at, _: denoise(expect, steer, noise, at, eta)
+def at_eta(solve: Solve, eta: float) -> Solve:
+    """Return a solver at an eta of its own."""
+    return lambda expect, steer, noise, at, _: solve(expect, steer, noise, at, eta)
 
 
 def solvers() -> dict[str, Solver]:
     """Return all, by name."""
     two: Mapping[str, tuple[str, Solve]] = {
-        "ancestral": ("ancestral (eta 1)", ancestral(1.0)),
-        "half": ("eta .5", ancestral(0.5)),
-        "ddim": ("DDIM (eta 0)", ancestral(0.0)),
-        "dpm": ("DPM-Solver++(2M)", lambda e, s, n, at, _: multistep(e, s, n, at, 0.0)),
-        "sde": ("SDE-DPM-Solver++(2M)", lambda e, s, n, at, _: multistep(e, s, n, at, 1.0)),
+        "ancestral": ("ancestral (eta 1)", at_eta(first_order, 1.0)),
+        "half": ("ancestral, eta .5", at_eta(first_order, 0.5)),
+        "ddim": ("DDIM (eta 0)", at_eta(first_order, 0.0)),
+        "dpm": ("DPM-Solver++(2M)", at_eta(denoise, 0.0)),
+        "sde": ("SDE-DPM-Solver++(2M)", at_eta(denoise, 1.0)),
         "churn": ("Euler, churn .4", lambda e, s, n, at, _: churned(e, s, n, at, 0.4, heun=False)),
     }
     every = {
@@ -102,8 +98,10 @@ def solvers() -> dict[str, Solver]:
     for count in (12, 24, 36):
         every[f"heun-{count}"] = Solver(f"Heun, churn .4, {count}", count // 2, lambda e, s, n, at, _: churned(e, s, n, at, 0.4, heun=True))
     for count in (8, 12):
-        every[f"middle-{count}"] = Solver(f"ancestral, levels denser in the middle, {count}", count, ancestral(1.0), middle_levels)
-    every["reference"] = Solver("ancestral, the paper's 1,000 levels", 0, ancestral(1.0))
+        every[f"middle-{count}"] = Solver(
+            f"SDE-DPM-Solver++(2M), levels denser in the middle, {count}", count, at_eta(denoise, 1.0), middle_levels
+        )
+    every["reference"] = Solver("ancestral, the paper's 1,000 levels", 0, at_eta(first_order, 1.0))
     return every
 
 
