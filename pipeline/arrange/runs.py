@@ -24,6 +24,7 @@ BACK = 0.004  # between the deepest unit and the wall [m]
 STRAY = 1.5  # a unit farther than this from every wall is no part of a run [m]
 DOORWAY = 0.05  # left free beside doors [m]
 CORNER = 0.6  # a gap to a corner that is narrower is closed [m]: half of all real kitchen cabinets stand there
+HANGING = 0.1  # for wall units, which hang over those that they were drafted over [m]
 AHEAD = 0.65  # of a run is kept free for its own doors where another meets it in a corner [m]
 HUNG_AT = 1.45  # usual underside of wall units above the floor [m]
 LEAST_AIR = 0.4  # from base units to wall units [m]
@@ -54,9 +55,23 @@ def stray_units(runs: Sequence[Sequence[int]], items: Sequence[Item], poses: Flo
     return [i for i in units if i not in alone and not any(k != i and _beside(items, poses, i, k) for k in units)]
 
 
+def bare_units(items: Sequence[Item], poses: Floats, there: NDArray[np.bool_]) -> list[int]:
+    """Return the wall units that stand at `poses` (N, 4), and over no base unit."""
+    hung = [i for i, item in enumerate(items) if there[i] and item.habit.kind == "kitchen" and item.mount == "wall"]
+    base = [i for i in base_units(items) if there[i]]
+    return [i for i in hung if not any(_over(items, poses, i, k) for k in base)]
+
+
 def base_units(items: Sequence[Item]) -> list[int]:
     """Return what may stand in a run."""
     return [i for i, item in enumerate(items) if item.habit.kind in KINDS and item.mount == "floor"]
+
+
+def _over(items: Sequence[Item], poses: Floats, i: int, k: int) -> bool:
+    """Whether the middle of wall unit i is over base unit k, or at most a seam beside it."""
+    c, s = math.cos(poses[k, 3]), math.sin(poses[k, 3])
+    dx, dy = poses[i, :2] - poses[k, :2]
+    return bool(abs(c * dx + s * dy) <= items[k].half[0] + NEXT and abs(c * dy - s * dx) <= items[k].half[1] + NEXT)
 
 
 def _beside(items: Sequence[Item], poses: Floats, i: int, k: int) -> bool:
@@ -146,7 +161,7 @@ class _Kitchen:
             self._assign(sorted(own, key=lambda i: (-float(items[i].half[0]), i)), stretches)
             for stretch in (st for st in stretches if st.units):
                 stretch.units.sort(key=lambda i: (round(self._wished(edge, i), 6), i))
-                self._lay(stretch, 0.0, site.elevation + bottom)
+                self._lay(stretch, 0.0, site.elevation + bottom, HANGING)
 
     def _wished(self, edge: Edge, i: int) -> float:
         """Return where along a wall a unit is drafted [m]."""
@@ -195,17 +210,16 @@ class _Kitchen:
         low = [i for i in tall if wished[i] < middle]
         return [*low, *_part_sink_cooker(base, self.items), *(i for i in tall if i not in low)]
 
-    def _lay(self, stretch: _Stretch, line: float, z: float) -> None:
+    def _lay(self, stretch: _Stretch, line: float, z: float, closed: float = CORNER) -> None:
         """Lay the units of a stretch side by side, their fronts on a `line` [m] before the wall, nearest to the draft; small gaps to the ends are closed."""
         steps = np.array([self.items[i].width for i in stretch.units]) + SEAM
         middles, total = np.cumsum(steps) - steps / 2, float(steps.sum())
         wished = np.array([self._wished(stretch.edge, i) for i in stretch.units])
         last = stretch.high - total
         start = min(max(float(np.mean(wished - middles)), stretch.low), last)
-        if start - stretch.low < CORNER:
-            start = stretch.low
-        elif last - start < CORNER:
-            start = last
+        end = min((stretch.low, last), key=lambda end: abs(start - end))
+        if abs(start - end) < closed:
+            start = end
         for i, middle in zip(stretch.units, middles, strict=True):
             half = float(self.items[i].half[1])
             self.poses[i] = stretch.edge.pose(float(start + middle), max(line - half, BACK + half), z)

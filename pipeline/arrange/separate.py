@@ -15,7 +15,7 @@ from pipeline.arrange.bonds import REACH, Bond, broken
 from pipeline.arrange.item import Item, make_item
 from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy
-from pipeline.arrange.runs import base_units, lay_runs, stray_units
+from pipeline.arrange.runs import bare_units, base_units, lay_runs, stray_units
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.settling import Settling
 from pipeline.arrange.site import Site
@@ -83,25 +83,27 @@ def separate(
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
         strays = stray_units(runs, items, occupancy.poses, occupancy.there)
-        wide = [i for i in strays if not any(i in run for run in runs)]
-        score = _score(there, items, BROKEN * _weight(items, (*apart, *strays)) + _useless(items, bonds, occupancy.unreached))
+        bare = bare_units(items, occupancy.poses, occupancy.there)
+        score = _score(
+            there, items, BROKEN * _weight(items, (*apart, *strays)) + _weight(items, bare) + _useless(items, bonds, occupancy.unreached)
+        )
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least, unreached = there, score, occupancy.unreached
             far = broken(bonds, items, occupancy.poses, occupancy.there, learnt, REACH)
-            astray = [i for i in far if _only_there(items, bonds[i], i, learnt)]
+            astray = [i for i in {*far, *bare} if i in bare or _only_there(items, bonds[i], i, learnt)]
         hidden = [i for i in occupancy.unreached if number == 0 or (bonds[i] is None and number < HIDDEN_ROUNDS)]
-        if sound and not (lost or apart or hidden or wide):
+        if sound and not (lost or apart or hidden or strays or bare):
             break
         led = frozenset(apart)
-        if wide:  # no order of placing makes a wall longer: its cabinets get narrower
-            _exchange(items, [i for i in base_units(items) if items[i].habit.kind == "kitchen"], shrink)
+        wide = [i for i in base_units(items) if strays and items[i].habit.kind == "kitchen"]
+        _exchange(items, [*wide, *bare], shrink)  # no order of placing makes a wall longer: its cabinets get narrower
         if number and smaller is not None:
             for i in (*lost, *apart):
                 losses[i] += 1
             # To be the first and still find no place, or none at the anchor, is to be too large.
             crowded = [i for i in (*lost, *apart) if losses[i] > (i in lost)]
             changed = _exchange(items, crowded, shrink)
-            if not (lost or changed or hidden or wide):
+            if not (lost or changed or hidden or strays or bare):
                 break
         waiting = [i for i in lost if items[i].mount != "wall"]  # a wall unit in the way of the run below it waits
         unseen = [i for i in hidden if number and i not in lost]

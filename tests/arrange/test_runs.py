@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from pipeline.arrange import separate
 from pipeline.arrange.item import make_item
-from pipeline.arrange.runs import stray_units
+from pipeline.arrange.runs import bare_units, stray_units
 from pipeline.verify import Policy, verify_home
 from tests.arrange.known import LORE, drafted
 from tests.geometry.furniture import block, cupboard, home, one_room
@@ -144,3 +144,34 @@ def test_units_without_a_neighbour_are_torn_from_their_run(apart, yaw, lone):
     poses = np.array([[1.0, 2.7, 0.0, 0.0], [1.8 + apart, 2.7, 0.0, yaw]])
     assert len(stray_units([[0, 1]], items, poses, np.ones(2, bool))) == lone
     assert stray_units([[0], [1]], items, poses, np.ones(2, bool)) == []
+
+
+def test_a_gap_at_the_nearer_end_of_the_wall_is_closed():
+    wide = one_room(np.array([[0.0, 0.0], [3.5, 0.0], [3.5, 3.0], [0.0, 3.0]]))
+    for shift in (0.1, 0.4):
+        wished = [drafted(ASSETS[name], 0.4 + shift + 0.8 * k, 2.65, number=k) for k, name in enumerate(("base", "sink", "base", "cooker"))]
+        found = separate(site(wide, "room"), wished, ASSETS, LORE).placements
+        low, high = min(p.position[0] - p.size[0] / 2 for p in found), max(p.position[0] + p.size[0] / 2 for p in found)
+        assert (low if shift < 0.2 else 3.5 - high) == pytest.approx(0.004, abs=0.002)
+
+
+def test_wall_units_hang_over_the_units_that_they_were_drafted_over():
+    wished = [drafted(ASSETS[name], 0.5 + 0.8 * k, 2.65, number=k) for k, name in enumerate(("base", "sink", "base", "cooker"))]
+    found = arranged([*wished, drafted(ASSETS["hung"], 2.2, 2.8, z=1.45, number=4)])
+    assert found["hung"].position[0] == pytest.approx(2.2, abs=0.01)
+
+
+def test_a_wall_unit_that_finds_no_place_over_the_base_is_left_out():
+    wished = [drafted(ASSETS[name], 0.45 + 0.8 * k, 2.65, number=k) for k, name in enumerate(("sink", "fridge"))]
+    wished += [drafted(ASSETS["hung"], 0.45 + 0.3 * k, 2.8, z=1.45, number=2 + k) for k in range(2)]
+    found = separate(site(narrow(), "room"), wished, ASSETS, LORE)
+    assert [p.asset_id for p in found.placements].count("hung") == 1
+    assert [r.reason for r in found.rejects] == ["unplaceable"]
+    kept = separate(site(narrow(), "room"), wished, ASSETS, LORE, keep_count=True)
+    assert [p.asset_id for p in kept.placements].count("hung") == 2
+
+
+def test_a_wall_unit_is_bare_where_no_base_unit_is_under_it():
+    items = [make_item(drafted(ASSETS["hung"], x, 2.8, z=1.45, number=k), ASSETS, LORE, 0.5) for k, x in enumerate((1.0, 3.0))]
+    items.append(make_item(drafted(ASSETS["base"], 1.1, 2.7, number=2), ASSETS, LORE, 0.5))
+    assert bare_units(items, np.array([i.wished for i in items]), np.ones(3, bool)) == [1]
