@@ -68,10 +68,9 @@ def separate(
     shrink = partial(_smaller_item, assets=assets, make=make, smaller=smaller or (lambda _asset_id, _area: None))
     items = [make(p) for p in placements]
     distances = learnt.distances([item.placement.category for item in items])
-    losses = [0] * len(items)
-    first: list[int] = []
+    first, losses = list[int](), [0] * len(items)
     led = unreached = frozenset[int]()
-    best, astray = dict[int, Placement](), list[int]()
+    best, astray = dict[int, Placement](), set[int]()
     least: tuple[float, float] | None = None
     for number in range(max(1, settings.rounds)):
         runs, laid = lay_runs(items, site)
@@ -84,19 +83,18 @@ def separate(
         lost = [i for i in range(len(items)) if i not in there]
         strays = stray_units(runs, items, occupancy.poses, occupancy.there)
         bare = bare_units(items, occupancy.poses, occupancy.there)
-        score = _score(
-            there, items, BROKEN * _weight(items, (*apart, *strays)) + _weight(items, bare) + _useless(items, bonds, occupancy.unreached)
-        )
+        faults = BROKEN * _weight(items, (*apart, *strays)) + _weight(items, bare) + _useless(items, bonds, occupancy.unreached)
+        score = _score(there, items, faults)
         if (sound or number == settings.rounds - 1) and (least is None or score < least):
             best, least, unreached = there, score, occupancy.unreached
             far = broken(bonds, items, occupancy.poses, occupancy.there, learnt, REACH)
-            astray = [i for i in {*far, *bare} if i in bare or _only_there(items, bonds[i], i, learnt)]
+            astray = {*bare, *(i for i in far if _only_there(items, bonds[i], i, learnt))}
         hidden = [i for i in occupancy.unreached if number == 0 or (bonds[i] is None and number < HIDDEN_ROUNDS)]
         if sound and not (lost or apart or hidden or strays or bare):
             break
         led = frozenset(apart)
-        wide = [i for i in base_units(items) if strays and items[i].habit.kind == "kitchen"]
-        _exchange(items, [*wide, *bare], shrink)  # no order of placing makes a wall longer: its cabinets get narrower
+        if strays or bare:  # no order of placing makes a wall longer: its cabinets get narrower
+            _exchange(items, [*bare, *(i for i in base_units(items) if strays and items[i].habit.kind == "kitchen")], shrink)
         if number and smaller is not None:
             for i in (*lost, *apart):
                 losses[i] += 1
