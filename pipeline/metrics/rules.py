@@ -26,6 +26,7 @@ KITCHEN = ("kitchen_cabinet", "sink_cabinet", "oven", "dishwasher", "refrigerato
 STORAGE = ("wardrobe", "cabinet", "children_cabinet")
 DESK_CHAIRS = ("lounge_chair", "dining_chair", "dressing_chair", "chinese_chair", "stool")
 HANGING = ("pendant_lamp", "ceiling_lamp")
+SLIGHT = (*HANGING, "wall_lamp", "floor_lamp", "plant")  # darken no room
 LIVING = ("living_room", "living_dining_room")
 
 AT_TABLE = 0.25  # m between chair and table
@@ -35,6 +36,10 @@ AT_DESK = 0.5  # m between chair and desk
 NEXT = 0.1  # m between units of a run, and
 NEXT_BACKS = 0.12  # between their backs
 AT_WALL = 0.15  # m between back and wall
+APART = 0.28  # m between sink and cooker: the narrowest unit
+TALL = 1.2  # m above the floor; what reaches higher
+AT_WINDOW = 0.6  # m before a window's wall, and
+ACROSS = 0.15  # m across the glass, blocks it
 STRAIGHT = np.radians(3.0)
 SIGHT = np.radians(35.0)  # to a screen's middle, from a seat's front
 SAME = np.radians(10.0)
@@ -121,6 +126,37 @@ def unit_in_run(room: Arrangement) -> Iterator[bool]:
         yield from table.any(1).tolist()
 
 
+def sink_and_cooker_apart(room: Arrangement) -> Iterator[bool]:
+    """Kitchens with both: a unit or more between each sink and the cookers."""
+    if room.layout_type == "kitchen":
+        yield from (not near for near in any_of(room, ("oven",), ("sink_cabinet",), lambda f: apart(f) < APART))
+
+
+def wall_unit_over_base(room: Arrangement) -> Iterator[bool]:
+    """Wall units of kitchens: over a base unit, or a seam beside it."""
+    if room.layout_type == "kitchen":
+        for k in of(room, ("wall_cabinet",)):
+            frames = frames_of(room, of(room, KITCHEN), np.array([k]))
+            yield bool((np.abs(frames.place) <= frames.anchor / 2 + NEXT).all(1).any())
+
+
+def window_is_free(room: Arrangement) -> Iterator[bool]:
+    """Windows: nothing that is tall or hangs on the wall stands before them."""
+    tall = [k for k, name in enumerate(room.categories) if name not in SLIGHT]
+    floor = room.position[tall, 2].min(initial=0.0) if tall else 0.0
+    tall = [k for k in tall if room.position[k, 2] + room.size[k, 2] > floor + TALL]
+    for start, end in (opening.segment for opening in room.openings if opening.kind == "window"):
+        along = (end - start) / np.linalg.norm(end - start)
+        off = np.array([-along[1], along[0]])
+        turn = room.yaw[tall] - np.arctan2(along[1], along[0])
+        c, s = np.abs(np.cos(turn)), np.abs(np.sin(turn))
+        w, d = room.size[tall, :2].T / 2
+        middle = room.position[tall, :2] - start
+        low, high = middle @ along - c * w - s * d, middle @ along + c * w + s * d
+        across = np.minimum(high, np.linalg.norm(end - start)) - np.maximum(low, 0.0)
+        yield not bool(((across > ACROSS) & (np.abs(middle @ off) - s * w - c * d < AT_WINDOW)).any())
+
+
 def straight(room: Arrangement) -> Iterator[bool]:
     """Floor things: parallel to a wall, to 3 degrees. What has no front of its own to speak of counts as well."""
     edge = np.roll(room.polygon, -1, axis=0) - room.polygon
@@ -176,6 +212,9 @@ RULES: Mapping[str, Rule] = MappingProxyType(
         "sofa looks at the TV stand": sofa_looks_at_screen,
         "nightstand at the bed": nightstand_at_bed,
         "kitchen unit in a run": unit_in_run,
+        "sink and cooker apart": sink_and_cooker_apart,
+        "wall unit over a base unit": wall_unit_over_base,
+        "window kept free": window_is_free,
         "straight, to 3 degrees": straight,
         "bathroom has toilet and vanity": has(("bathroom",), ("toilet",), ("vanity",)),
         "bathroom has shower or tub": has(("bathroom",), ("shower", "bathtub")),
