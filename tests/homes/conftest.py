@@ -132,3 +132,8 @@ def library(tmp_path_factory):
 @pytest.fixture(scope="session")
 def factory(library):
     return factory_of(library)
+
+
+@pytest.fixture
+def factory_with(tmp_path):
+    return lambda kept: factory_of(library_of(tmp_path, list(filter(kept, assets()))))
