@@ -68,10 +68,10 @@ class Sampler:
     def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], floors: Sequence[Floor]) -> list[NDArray[np.int64]]:
         """Draw what each room holds: class indices (n,), rising. Told numbers and category_bounds are met, at most `slots` objects."""
         layouts = self._layouts(rooms)
-        for told in (r.n_target for r in rooms if r.n_target is not None):
-            if not 0 <= told <= self.slots:
+        for count in (r.n_target for r in rooms if r.n_target is not None):
+            if not 0 <= count <= self.slots:
                 raise ContentError(
-                    f"{told} objects are asked for in a room, and the layout model knows 0 to {self.slots}", "ask for so many"
+                    f"{count} objects are asked for in a room, and the layout model knows 0 to {self.slots}", "ask for so many"
                 )
         classes, room_counts = self.header.norm.classes, []
         with one_thread():
