@@ -3,6 +3,7 @@
 # PRESET=smoke|quick|full|paper  works on a scratch clone in build/<preset>, so that no tracked file changes
 # PYTHON=python3.12              the interpreter that .venv is made with (CPython 3.11 or newer)
 # TORCH_INDEX=URL                a package index for torch alone, such as PyTorch's CPU index
+# START=scratch                  `make weights` trains from nothing, not from what lies in weights/: three hours
 # JOBS=2                         processes of the tests
 
 SHELL := bash
@@ -12,6 +13,7 @@ SHELL := bash
 .PHONY: run test engines check deps bench weights clean help
 
 PRESET ?=
+START ?= released
 TORCH_INDEX ?=
 JOBS ?= 2
 PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3 python; do \
@@ -53,10 +55,11 @@ deps: $(DEV) ## write the code that each stage runs into dvc.yaml
 bench: $(DEV) ## every benchmark in benchmarks/
 	failed=; for file in benchmarks/*.py; do echo "== $$file"; PYTHONPATH=. python $$file || failed="$$failed $$file"; done; test -z "$$failed" || { echo "failed:$$failed"; exit 1; }
 
+# with a PRESET they stay in its clone
 weights: $(READY) ## train the released weights further, into weights/: an hour; a killed run goes on
-	python .ci/scratch.py build/release release
-	cd build/release && dvc repro train
-	cp build/release/models/vae.safetensors build/release/models/denoiser.safetensors weights/
+	python .ci/scratch.py build/$(or $(PRESET),release) $(or $(PRESET),release) $(START)
+	cd build/$(or $(PRESET),release) && dvc repro train
+	$(if $(PRESET),,cp build/$(or $(PRESET),release)/models/{vae,denoiser}.safetensors weights/)
 
 clean: ## scratch clones and caches; what DVC made stays
 	rm -rf build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

@@ -1,6 +1,7 @@
 """Make a scratch clone of this working tree, uncommitted changes included, with another preset chosen.
 
     python .ci/scratch.py build/smoke smoke
+    python .ci/scratch.py build/smoke smoke scratch     # the models from nothing (encode.start, train.start)
 
 A clone that is there already is brought up to date: what its stages have made, and DVC's cache, stay.
 """
@@ -12,8 +13,8 @@ import sys
 from pathlib import Path
 
 
-def main(target: Path, preset: str) -> None:
-    """Fill `target` and set the preset in its params.yaml."""
+def main(target: Path, preset: str, start: str = "") -> None:
+    """Fill `target` and set the preset in its params.yaml, and what the models start from where `start` says."""
     if not (target / ".git").exists():
         shutil.rmtree(target, ignore_errors=True)
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -26,15 +27,17 @@ def main(target: Path, preset: str) -> None:
         if source.is_file() and not (name == "dvc.lock" and copy.exists()):
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, copy)
-    choose(target / "params.yaml", preset)
+    choose(target / "params.yaml", preset, start)
 
 
-def choose(path: Path, preset: str) -> None:
-    """Set the key `preset` of params.yaml."""
+def choose(path: Path, preset: str, start: str = "") -> None:
+    """Set the key `preset` of params.yaml, and both keys `start` where one is given."""
     text, count = re.subn(r"(?m)^preset: *\w+", f"preset: {preset}", path.read_text(encoding="utf-8"))
     if count != 1 or not re.search(rf"(?m)^  {re.escape(preset)}:", text):
         sys.exit(f"sfgen: params.yaml has no preset {preset!r}; give PRESET= one of those under its key `presets`")
-    path.write_text(text, encoding="utf-8")
+    if start not in {"", "released", "scratch"}:
+        sys.exit(f"sfgen: models do not start from {start!r}; give START=released or START=scratch")
+    path.write_text(re.sub(r"(?m)^  start: *\w+", f"  start: {start}", text) if start else text, encoding="utf-8")
 
 
 def git_files(*arguments: str) -> list[str]:
@@ -48,4 +51,4 @@ def git(*arguments: str) -> str:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), sys.argv[2])
+    main(Path(sys.argv[1]), *sys.argv[2:])

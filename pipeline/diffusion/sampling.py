@@ -68,6 +68,11 @@ class Sampler:
     def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], floors: Sequence[Floor]) -> list[NDArray[np.int64]]:
         """Draw what each room holds: class indices (n,), rising. Told numbers and category_bounds are met, at most `slots` objects."""
         layouts = self._layouts(rooms)
+        for count in (r.n_target for r in rooms if r.n_target is not None):
+            if not 0 <= count <= self.slots:
+                raise ContentError(
+                    f"{count} objects are asked for in a room, and the layout model knows 0 to {self.slots}", "ask for so many"
+                )
         classes, room_counts = self.header.norm.classes, []
         with one_thread():
             for start in range(0, len(rooms), self.settings.batch):

@@ -8,7 +8,7 @@ from typing import Literal
 from pipeline import params, yaml_text
 
 PATH = Path(__file__).resolve().parents[2] / "manifests" / "reasons.yaml"
-Effect = Literal["quarantined", "dropped", "repaired", "tried again", "left empty"]
+Effect = Literal["quarantined", "dropped", "repaired", "tried again", "shipped", "left empty"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from typing import Any
 
 from pipeline import params, tables
 from pipeline.arrange import LearntRelations, PostoptSettings
+from pipeline.diffusion.checkpoint import require_vocabulary
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.errors import ContentError, RefusedError
@@ -72,6 +73,8 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
     relations = data / "tables" / "relations.json"
     if not weights.is_file():
         raise ContentError(f"there are no trained weights ({weights} is missing)", f"type `make run` in {root}")
+    sampler = Sampler.load(weights, params.section(SampleSettings, tree, "sample"), seed)
+    require_vocabulary(weights, sampler.header)
     library = Library.read(data / "tables", data / "assets")
     latents_file = data / "latents" / "latents.parquet"
     latents = tables.read(latents_file, LATENTS)
@@ -79,7 +82,7 @@ def load_factory(root: Path, tree: Mapping[str, Any], seed: int) -> Factory:
     names = ("sample", "retrieval", "postopt", "verify", "prior", "shard")
     return Factory(
         seed,
-        Sampler.load(weights, params.section(SampleSettings, tree, "sample"), seed, index),
+        replace(sampler, library=index),
         index,
         library,
         params.section(ShardSettings, tree, "shard"),

@@ -8,6 +8,7 @@ from pipeline import taxonomy
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq
 from pipeline.floorplan.program.furniture import matching_categories, plain
 from pipeline.homes.room_finishing import bounds_in_words
+from pipeline.homes.rows import BEST
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +23,7 @@ class Delivery:
 
 
 def deliveries(program: FloorProgram, rows: Mapping[str, Sequence[Mapping[str, Any]]], styles: Mapping[str, str]) -> list[Delivery]:
-    """Compare a program with the rows of a finished home; `styles` gives the style of each asset, "" where it is unknown."""
+    """Compare a program with the rows of a finished home, and name rooms that ship though their tries failed; `styles` gives the style of each asset, "" where it is unknown."""
     measured = {row["room_id"]: row for row in rows["rooms"]}
     pieces = set(taxonomy.load().names)  # what lies on or in furniture is no piece of it
     entries: list[Delivery] = []
@@ -35,7 +36,8 @@ def deliveries(program: FloorProgram, rows: Mapping[str, Sequence[Mapping[str, A
         if wish != Furniture() and room.id in measured:
             objects = [o for o in rows["objects"] if o["room_id"] == room.id and o["category"] in pieces]
             entries += _room(room, wish, measured[room.id], objects, styles)
-    return entries
+    lacking = ((row["where"].rpartition("/")[2].partition("#")[0], row["detail"]) for row in rows["rejects"] if row["reason"] == BEST)
+    return entries + [Delivery(room, "what makes the room", "unasked", detail, met=False) for room, detail in lacking]
 
 
 def report(entries: Sequence[Delivery]) -> str:

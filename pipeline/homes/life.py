@@ -26,7 +26,7 @@ from pipeline.homes.planning import PlannedHome, plan_home
 from pipeline.homes.request import Request, RoomJob
 from pipeline.homes.resources import Resources
 from pipeline.homes.room_finishing import RoomResult, finish
-from pipeline.homes.rows import Row, home_rows, reject_row
+from pipeline.homes.rows import BEST, Row, home_rows, reject_row
 from pipeline.homes.soundness import closed_rooms
 from pipeline.homes.violations import Violation, violations
 from pipeline.shards import scene_id
@@ -248,7 +248,8 @@ class HomeLife:
                 exported = files_of(home, r.library, r.shard.preview)
         results = {k: room.best for k, room in self.rooms.items() if room.best}
         rows = home_rows(home, self.certificate, results, r.library, taxonomy.load(), self.tries, r.shard.licence)
-        rows["rejects"] = self.rejects
+        failed = [(best.draft.job, ("room", BEST, f"{best.failure}: {best.detail}")) for best in results.values() if best.failure]
+        rows["rejects"] = self.rejects + [self._reject(job, reject) for job, reject in failed]
         tell("made", home.index)
         return Outcome(home, self.certificate, rows, exported)
 

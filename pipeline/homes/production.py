@@ -23,6 +23,7 @@ from pipeline.homes.outcomes import Empty, Outcome
 from pipeline.homes.planning import PlannedHome
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request
+from pipeline.homes.rows import BEST
 from pipeline.shards import (
     EMPTY,
     TABLES,
@@ -225,7 +226,7 @@ def make_chunk(recipe: Recipe, chunk: Chunk) -> Batch:
     if recipe.cache_assets:
         with factory.time("library"):
             factory.asset_cache.stock(row["asset_id"] for home in homes for row in home.rows["objects"])
-    retries = sum(row["what"] in {"room", "home"} for home in homes for row in home.rows["rejects"])
+    retries = sum(row["what"] in {"room", "home"} and row["reason"] != BEST for home in homes for row in home.rows["rejects"])
     return Batch(homes, tuple(o for o in outcomes if isinstance(o, Empty)), dict(factory.seconds), retries)
 
 

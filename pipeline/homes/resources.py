@@ -19,15 +19,15 @@ from pipeline.verify import VerifySettings
 class ShardSettings:
     """How datasets are cut and what a home may cost (section `shard`)."""
 
-    homes: int = 64  # homes per shard
-    chunk: int = 16  # homes that are sampled together
-    room_attempts: int = 5  # tries of one room before the best of them is taken
-    home_attempts: int = 8  # plans tried for one index before it stays empty
-    plan_draws: int = 8  # drawings of one of them that the judge may find unsound
-    home_seconds: float = 300.0  # CPU seconds that one home may take, and seconds that a worker may keep silent [s]
-    shard_seconds: float = 30.0  # CPU seconds that the homes of a shard may take in the mean: beyond it the others of it stay empty [s]
-    licence: str = "CC0-1.0"  # of what is made; with research-only assets, name theirs
-    preview: int = 768  # side of the top views [px], 0: none; `sfgen shard --preview` says otherwise
+    homes: int  # homes per shard
+    chunk: int  # homes that are sampled together
+    room_attempts: int  # tries of one room before the best of them is taken
+    home_attempts: int  # plans tried for one index before it stays empty
+    plan_draws: int  # drawings of one of them that the judge may find unsound
+    home_seconds: float  # CPU seconds that one home may take, and seconds that a worker may keep silent [s]
+    shard_seconds: float  # CPU seconds that the homes of a shard may take in the mean: beyond it the others of it stay empty [s]
+    licence: str  # of what is made; with research-only assets, name theirs
+    preview: int  # side of the top views [px], 0: none; `sfgen shard --preview` says otherwise
 
     def __post_init__(self) -> None:
         if not 1 <= self.room_attempts <= MOST_ATTEMPTS:

@@ -18,6 +18,7 @@ from pipeline.verify import Certificate
 
 Row = dict[str, Any]
 REASONS = reasons("homes")  # why something was left out, exchanged or tried again while homes were made: the codes of `rejects`
+BEST = "best_of_tries"  # the code of a room that ships though its tries failed
 
 # What a table has of a record under the same names.
 ROOM = ("room_id", "type", "role", "level", "height", "polygon")

@@ -16,7 +16,7 @@ TITLES = {
     "finished": "finished",
     "shipped": "shipped",
 }
-VOID = "Void for what it does not see: real rooms with things"
+VOID = "Void, for harm that is not seen:"
 
 
 def realism_section(table: Json, pictures: Sequence[Picture]) -> Section:
@@ -24,7 +24,7 @@ def realism_section(table: Json, pictures: Sequence[Picture]) -> Section:
     relations = table["relations"]
     text = [
         "Real: furnished rooms of the test split. Drafts: what the layout model draws on the same floors. Finished: those as they would ship. Shipped: the rooms of the homes above, on floors of their own.",
-        "Harms are done to real rooms: a figure that does not see one of them (SCA of .8 and more, FID twice that of training rooms) is void for it.",
+        "Harms are done to real rooms: a figure that does not see each of them (SCA of .8 and more, FID and KID at least twice those of training rooms) is void.",
         "Learnt relations are those that the training rooms show most clearly; no list of them is written by hand.",
     ]
     views = [view for name, figures in table["views"].items() for view in _views(name, figures)]
@@ -77,7 +77,8 @@ def _views(name: str, figures: Json) -> list[TableView]:
 
 
 def _with_warning(caption: str, figures: Json) -> str:
-    return f"{caption} {VOID} {', '.join(figures['blind_to'])}." if figures["blind_to"] else caption
+    void = [f"{figure} ({', '.join(harms)})" for figure, harms in figures["blind_to"].items() if harms]
+    return f"{caption} {VOID} {', '.join(void)}." if void else caption
 
 
 def _novelty(figures: Json) -> TableView:

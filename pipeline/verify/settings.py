@@ -1,6 +1,6 @@
 """What the judge holds homes to."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from pipeline.geometry.robot import Robot
 
@@ -9,11 +9,11 @@ from pipeline.geometry.robot import Robot
 class Policy:
     """What a home must satisfy to ship."""
 
-    collisions: int = 0  # most objects that intersect something
-    clear: float = 1.0  # least share of joints that move freely through their range
-    reach: float = 0.0  # least share of openable objects that the robot can open
-    connected: bool = True  # every room can be reached from the entrance
-    supported: bool = True  # nothing floats
+    collisions: int  # most objects that intersect something
+    clear: float  # least share of joints that move freely through their range
+    reach: float  # least share of openable objects that the robot can open
+    connected: bool  # every room can be reached from the entrance
+    supported: bool  # nothing floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,4 +25,4 @@ class VerifySettings:
     float_gap: float  # an object that stands no higher than this above its support does not float [m]
     cell: float  # cell of the free-floor raster [m]
     robot: Robot
-    policy: Policy = field(default_factory=Policy)
+    policy: Policy

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 import typer.main
 
+from pipeline.manifest import sha256_file
 from sfgen import cli
 
 ROOT = Path(__file__).parents[2]
@@ -54,6 +55,16 @@ def test_readme_names_every_command_and_the_main_targets():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert all(f"sfgen {command}" in text for command in COMMANDS)
     assert all(f"make {target}" in text for target in ("run", "test", "check"))
+
+
+def test_the_weights_are_those_of_their_card():
+    text = (ROOT / "weights" / "README.md").read_text(encoding="utf-8")
+    told = {
+        name: (int(size.replace(",", "")), sha)
+        for name, size, sha in re.findall(r"(?m)^\| `(\S+)` \|.*\| ([\d,]+) \| `(\w{64})` \|$", text)
+    }
+    files = [path for path in (ROOT / "weights").iterdir() if path != ROOT / "weights" / "README.md"]
+    assert told == {path.name: (path.stat().st_size, sha256_file(path)) for path in files}
 
 
 def test_columns_are_those_of_the_schemas():

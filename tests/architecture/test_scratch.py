@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 SCRIPT = Path(__file__).parents[2] / ".ci" / "scratch.py"
-PARAMS = "preset: quick # the default\nseed: 1\npresets:\n  quick: {}\n  smoke:\n    train: {steps: 2}\n"
+PARAMS = "preset: quick # the default\nseed: 1\nencode:\n  start: released # why\ntrain:\n  start: released\npresets:\n  quick: {}\n  smoke:\n    train: {steps: 2}\n"
 
 
 def git(folder, *arguments):
@@ -15,8 +15,8 @@ def git(folder, *arguments):
     return subprocess.run(["git", *identity, *arguments], cwd=folder, check=True, capture_output=True, text=True).stdout
 
 
-def scratch(folder, preset):
-    return subprocess.run([sys.executable, str(SCRIPT), "build/s", preset], cwd=folder, capture_output=True, text=True, check=False)
+def scratch(folder, *chosen):
+    return subprocess.run([sys.executable, str(SCRIPT), "build/s", *chosen], cwd=folder, capture_output=True, text=True, check=False)
 
 
 @pytest.fixture
@@ -69,6 +69,13 @@ def test_scratch_is_brought_up_to_date_and_keeps_what_was_made(tree):
     assert not (copy / "kept.py").exists()
     assert (copy / "data" / "made").exists()
     assert (copy / "dvc.lock").read_text() == "mine"
+
+
+def test_models_may_start_from_nothing(tree):
+    assert scratch(tree, "smoke", "scratch").returncode == 0
+    text = (tree / "build" / "s" / "params.yaml").read_text()
+    assert text == PARAMS.replace("preset: quick", "preset: smoke").replace("released", "scratch")
+    assert "START=scratch" in scratch(tree, "smoke", "nothing").stderr
 
 
 def test_an_unknown_preset_is_named(tree):

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pipeline.arrange import separate
 from pipeline.arrange.item import make_item
 from pipeline.arrange.runs import bare_units, stray_units
-from pipeline.verify import Policy, verify_home
+from pipeline.verify import verify_home
 from tests.arrange.known import LORE, drafted
 from tests.geometry.furniture import block, cupboard, home, one_room
 from tests.judging import SETTINGS, site
@@ -35,7 +35,7 @@ def room():
 
 def arranged(placements):
     found = separate(site(room(), "room"), placements, ASSETS, LORE)
-    assert verify_home(home(found.placements, room()), ASSETS, SETTINGS).faults(Policy()) == ()
+    assert verify_home(home(found.placements, room()), ASSETS, SETTINGS).faults(SETTINGS.policy) == ()
     assert found.rejects == ()
     return {p.asset_id: p for p in found.placements}
 
@@ -64,7 +64,7 @@ def test_wall_units_hang_flush_over_the_base_and_not_over_the_refrigerator():
     wished = [drafted(ASSETS[name], 0.9 + 0.8 * k, 2.65, number=k) for k, name in enumerate(("fridge", "sink", "base", "cooker"))]
     wished += [drafted(ASSETS["hung"], 1.2, 2.8, 0.1, z=1.5, number=4), drafted(ASSETS["hung"], 2.3, 2.75, -0.1, z=1.38, number=5)]
     found = separate(site(room(), "room"), wished, ASSETS, LORE).placements
-    assert verify_home(home(found, room()), ASSETS, SETTINGS).faults(Policy()) == ()
+    assert verify_home(home(found, room()), ASSETS, SETTINGS).faults(SETTINGS.policy) == ()
     left, right = sorted((p for p in found if p.asset_id == "hung"), key=lambda p: p.position[0])
     assert right.position[0] - left.position[0] == pytest.approx(0.802, abs=0.001)
     assert left.position[2] == right.position[2] == pytest.approx(1.44, abs=0.02)
@@ -123,7 +123,7 @@ def test_cabinets_get_narrower_where_a_run_is_too_long_for_its_wall(exchanged):
     wished = [drafted(ASSETS[name], 0.35 + 0.6 * k, 2.6, number=k) for k, name in enumerate(names)]
     smaller = lambda name, _: SimpleNamespace(asset_id="slim", distance=0.1, scale=np.ones(3)) if name == "base" and exchanged else None  # noqa: E731
     found = separate(site(narrow(), "room"), wished, ASSETS, LORE, smaller=smaller).placements
-    assert verify_home(home(found, narrow()), ASSETS, SETTINGS).faults(Policy()) == ()
+    assert verify_home(home(found, narrow()), ASSETS, SETTINGS).faults(SETTINGS.policy) == ()
     assert in_one_run(found) == exchanged
     assert sum(p.asset_id == "slim" for p in found) == 2 * exchanged
 

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.arrange import separate
-from pipeline.verify import Policy, verify_home
+from pipeline.verify import verify_home
 from tests.arrange.known import LORE, farthest
 from tests.geometry.furniture import LIBRARY, chest, home, one_room, placed, two_rooms
 from tests.judging import SETTINGS, site
@@ -33,7 +34,7 @@ def room(side=4.5, plan=None):
 def test_what_comes_out_passes_the_judge(seed):
     plan = room()
     found = separate(site(plan, "room"), messy(seed), LIBRARY, LORE)
-    assert judge(found.placements, plan).faults(Policy()) == ()
+    assert judge(found.placements, plan).faults(SETTINGS.policy) == ()
     assert len(found.placements) + sum(r.reason == "unplaceable" for r in found.rejects) == 6
 
 
@@ -41,7 +42,7 @@ def test_a_robot_gets_to_nearly_all_that_opens_where_no_relation_is_in_its_way()
     plan = room()
     drafts = [messy(seed, ("bed", "chest", "cupboard", "chair", "table")) for seed in range(16)]
     found = [judge(separate(site(plan, "room"), draft, LIBRARY, LORE).placements, plan) for draft in drafts]
-    assert sum(certificate.faults(Policy(reach=1.0)) == () for certificate in found) >= 14
+    assert sum(certificate.faults(replace(SETTINGS.policy, reach=1.0)) == () for certificate in found) >= 14
 
 
 @settings(max_examples=12, deadline=None)

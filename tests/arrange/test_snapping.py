@@ -15,7 +15,7 @@ from pipeline.entities.plan import Opening, Plan
 from pipeline.relations.frames import Boxes, relate
 from pipeline.relations.model import WallRelation, relations
 from pipeline.relations.modes import Mode, Span
-from pipeline.verify import Policy, verify_home
+from pipeline.verify import verify_home
 from tests.arrange.known import LORE, RELATIONS, drafted, mode, pair, wall
 from tests.geometry.furniture import LIBRARY, block, chest, home, one_room
 from tests.judging import SETTINGS, site
@@ -37,7 +37,7 @@ def room(width=5.0, depth=4.0):
 
 def arranged(placements, plan):
     found = separate(site(plan, "room"), placements, ASSETS, LORE)
-    assert verify_home(home(found.placements, plan), ASSETS, SETTINGS).faults(Policy()) == ()
+    assert verify_home(home(found.placements, plan), ASSETS, SETTINGS).faults(SETTINGS.policy) == ()
     assert found.rejects == ()
     return found.placements
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pipeline.arrange import Laying, ThingsSettings
 from pipeline.arrange.surfaces import surfaces
 from pipeline.entities.home import Placement
-from pipeline.verify import Policy, verify_home
+from pipeline.verify import verify_home
 from tests.geometry.furniture import LIBRARY, SQUARE, asset, block, box, chest, cupboard, home, link, placed
 from tests.judging import SETTINGS
 
@@ -67,7 +67,7 @@ def test_the_judge_finds_no_fault(seed):
     ]
     things = laid(furniture, seed)
     before, after = verify_home(home(furniture), LIBRARY, SETTINGS), verify_home(home([*furniture, *things]), LIBRARY, SETTINGS)
-    assert after.faults(Policy()) == ()
+    assert after.faults(SETTINGS.policy) == ()
     assert len(things) >= 6
     assert (after.reach, after.openable) == (before.reach, before.openable)
     assert [(r.walkable_paper, r.walkable_free) for r in after.rooms] == [(r.walkable_paper, r.walkable_free) for r in before.rooms]

@@ -99,13 +99,19 @@ def test_the_key_and_the_seed_decide(weights):
     assert not same(one, sampler(weights, seed=8).sample_rooms([room], [(0, 0, 0)])[0])
 
 
-@pytest.mark.parametrize("count", [1, 5, 16, 24])
+@pytest.mark.parametrize("count", [0, 1, 5, 16, 24])
 def test_the_asked_number_is_exact_even_from_a_net_that_knows_nothing(weights, count):
     s = sampler(weights)
     rooms = [make_context(i, n_target=count) for i in range(4)]
     keys = [(i, 0, 0) for i in range(4)]
     assert [len(p) for p in s.sample_rooms(rooms, keys)] == [count] * 4
     assert any(len(p) != count for p in s.baseline().sample_rooms(rooms, keys))
+
+
+@pytest.mark.parametrize("count", [-1, 25, 32, 33])
+def test_a_number_that_training_does_not_know_is_refused(weights, count):
+    with pytest.raises(ContentError, match=f"{count} objects.*0 to 24"):
+        sampler(weights).sample_rooms([make_context(0, n_target=count)], [(0, 0, 0)])
 
 
 def test_demands_are_met(weights):

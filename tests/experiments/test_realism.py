@@ -15,7 +15,7 @@ from pipeline import tables
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan, Room
 from pipeline.experiments.lineup import alone, by_type, lineup
-from pipeline.experiments.realism import Beside, alike, beside, embeddings, realism_table, shipped_rooms, view_figures
+from pipeline.experiments.realism import Beside, alike, beside, embeddings, realism_table, shipped_rooms, unseen, view_figures
 from pipeline.experiments.rooms import FIRST
 from pipeline.homes.rows import object_row, room_row, scene_row
 from pipeline.manifest import canonical
@@ -103,7 +103,7 @@ def table(rooms):
 def test_what_is_spoilt_is_seen_and_what_is_real_is_not(table):
     assert table["layout"]["made"]["guided"]["rate"] > 0.8 > table["layout"]["made"]["train"]["rate"]
     assert table["layout"]["harm"]["jittered"]["rate"] > 0.9
-    assert "all" not in table["layout"]["blind_to"]
+    assert "all" not in table["layout"]["blind_to"]["SCA"]
     views = table["views"]["plan-view net"]
     assert views["made"]["guided"]["fid"] > 2 * views["made"]["train"]["fid"]
     assert (
@@ -142,11 +142,27 @@ def test_the_chapter_shows_it_and_calls_a_blind_figure_void(table):
     page = render("t", "l", [realism_section(table, [])])
     assert "drafts, guided" in page
     assert "nightstand at the bed" in page
-    for blind_to, shown in ((["turned"], 1), ([], 0)):
-        told = [{**table[name], "blind_to": blind_to} for name in ("layout",)]
-        views = {name: {**found, "blind_to": []} for name, found in table["views"].items()}
-        page = render("t", "l", [realism_section({**table, "layout": told[0], "views": views}, [])])
+    for turned, shown in ((["turned"], 2), ([], 0)):
+        layout = {**table["layout"], "blind_to": {"SCA": turned}}
+        views = {name: {**found, "blind_to": {"FID": [], "KID": turned, "SCA": []}} for name, found in table["views"].items()}
+        page = render("t", "l", [realism_section({**table, "layout": layout, "views": views}, [])])
         assert page.count(VOID) == shown
+        assert page.count("KID (turned)") == page.count("SCA (turned)") == shown / 2
+
+
+def test_each_figure_is_void_where_it_alone_does_not_see_a_harm():
+    def figures(fid, kid, sca):
+        return {"fid": fid, "kid": {"mean": kid, "low": kid - 0.1, "high": kid + 0.1}, "sca": {"rate": sca}}
+
+    train = figures(1.0, 0.0, 0.5)
+    harm = {
+        "seen": figures(2.0, 0.2, 0.8),
+        "near": figures(1.9, 0.3, 0.9),
+        "alike": figures(3.0, 0.19, 0.9),
+        "told": figures(3.0, 0.3, 0.79),
+    }
+    assert unseen(harm, train) == {"FID": ["near"], "KID": ["alike"], "SCA": ["told"]}
+    assert unseen(harm, None) == {"FID": [*harm], "KID": [*harm], "SCA": ["told"]}
 
 
 def test_lineups_show_each_room_twice(factory, homes):  # noqa: F811

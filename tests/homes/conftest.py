@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline import seeds
+from pipeline import params, seeds
 from pipeline.arrange import LearntRelations, PostoptSettings
 from pipeline.diffusion.context import Proposal
 from pipeline.diffusion.settings import SampleSettings
@@ -120,7 +120,7 @@ def library_of(folder, made):
 def factory_of(library):
     latents = [{"asset_id": a, "latent": np.full(32, i, np.float32)} for i, a in enumerate(sorted(library))]
     index = AssetIndex.from_tables(library.rows.values(), latents)
-    shard = ShardSettings(homes=4, chunk=2, preview=0)
+    shard = replace(params.section(ShardSettings, params.read(ROOT / "params.yaml"), "shard"), homes=4, chunk=2, preview=0)
     return Factory(3, Rules(3), index, library, shard, PostoptSettings(), SETTINGS, PriorSettings(), {}, LearntRelations(relations([], [])))
 
 
@@ -132,3 +132,8 @@ def library(tmp_path_factory):
 @pytest.fixture(scope="session")
 def factory(library):
     return factory_of(library)
+
+
+@pytest.fixture
+def factory_with(tmp_path):
+    return lambda kept: factory_of(library_of(tmp_path, list(filter(kept, assets()))))

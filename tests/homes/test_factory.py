@@ -6,12 +6,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pipeline.errors import RefusedError
+from pipeline import params, taxonomy
+from pipeline.diffusion.checkpoint import Header, build_inventory, build_net, save_weights
+from pipeline.diffusion.codec import CHANNELS, Normalisation
+from pipeline.diffusion.settings import ModelSettings
+from pipeline.errors import ContentError, RefusedError
 from pipeline.homes import factory as factories
 from pipeline.homes.drafts import draft_rows, drafts_of
 from pipeline.homes.request import Request
 from pipeline.verify import verify_home
 
+ROOT = Path(__file__).parents[2]
 STUDIO = "a one-bedroom flat of 50 m2 with a living room, a kitchen and a bathroom"
 
 
@@ -101,6 +106,24 @@ def test_poses_are_rounded(outcomes):
 def test_cpu_seconds_are_counted_by_part(factory, outcomes):
     assert outcomes
     assert {"plan", "sample", "postopt", "verify"} <= factory.seconds.keys()
+
+
+def test_weights_of_another_vocabulary_make_no_homes(tmp_path):
+    """A category of the taxonomy that they do not know would never be in a home, and nobody would be told."""
+    words, net = taxonomy.load(), ModelSettings(8, 1, 1, 2, 4)
+    for classes, layouts, odd in (
+        (("king_size_bed", *words.names[1:]), words.layout_types, "king_size_bed"),
+        (words.names, words.layout_types[:-1], words.layout_types[-1]),
+    ):
+        ones = ((1.0,) * CHANNELS,) * len(classes)
+        norm = Normalisation(ones, ones, classes)
+        header = Header(norm, layouts, 24, net, 8)
+        save_weights(
+            tmp_path / "models/denoiser.safetensors", header, {"denoiser": build_net(header), "inventory": build_inventory(header)}
+        )
+        with pytest.raises(ContentError, match=odd) as refused:
+            factories.load_factory(tmp_path, params.read(ROOT / "params.yaml"), 0)
+        assert "dvc repro train" in refused.value.remedy
 
 
 def test_a_worker_without_the_commands_folder_takes_the_checkout_of_its_own_code(tmp_path, monkeypatch):

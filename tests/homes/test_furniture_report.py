@@ -33,7 +33,7 @@ def test_asked_beside_delivered(factory):
     bed = [o["category"] for o in home.rows["objects"] if o["room_id"] == "bed"]
     assert (bed.count("nightstand"), bed.count("tv_stand")) == (1, 0)
     assert "wardrobe" in bed
-    assert {d.room for d in found} == {"bed"}
+    assert {d.room for d in found if d.asked != "unasked"} == {"bed"}
     assert (lines["nightstand"].asked, lines["nightstand"].delivered, lines["nightstand"].met) == ("1", "1", True)
     assert (lines["tv stand"].asked, lines["tv stand"].met) == ("none", True)
     assert (lines["wardrobe"].asked, lines["that open"].met, lines["free floor"].met) == ("at least 1", True, True)

@@ -7,7 +7,6 @@ from pipeline.homes import life as lives
 from pipeline.homes.furnish import Draft
 from pipeline.homes.life import HomeLife, RoomTries, State
 from pipeline.homes.request import Request, RoomJob
-from pipeline.homes.resources import ShardSettings
 from pipeline.homes.room_finishing import RoomResult
 
 
@@ -25,12 +24,12 @@ def test_a_room_keeps_the_better_of_its_tries_and_has_no_more_than_its_budget(jo
     assert [tries.again(3).attempt, tries.again(3).attempt, tries.again(3)] == [1, 2, None]
 
 
-def test_no_two_tries_of_a_room_share_a_draw(job):
-    most = ShardSettings().room_attempts
+def test_no_two_tries_of_a_room_share_a_draw(job, factory):
+    most = factory.shard.room_attempts
     draws = [replace(job, plan_attempt=plan, attempt=k).draw for plan in range(3) for k in range(most)]
     assert len(set(draws)) == len(draws)
     with pytest.raises(ContentError, match="room_attempts"):
-        ShardSettings(room_attempts=101)
+        replace(factory.shard, room_attempts=101)
 
 
 def test_a_home_waits_for_drafts_or_is_refused_at_once(factory):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.homes.violations import violations
-from pipeline.verify import Policy, verify_home
+from pipeline.verify import verify_home
 from tests.geometry.furniture import LIBRARY, home, placed
 from tests.judging import SETTINGS
 
@@ -35,7 +35,7 @@ def test_a_thing_is_held_by_what_it_names():
 def test_what_lies_in_a_drawer_comes_out_with_it():
     book = thing("book", 0, 0, FLOOR)
     found = judge(CHEST, book)
-    assert found.faults(Policy()) == ()
+    assert found.faults(SETTINGS.policy) == ()
     assert [j.clear for j in found.joints if j.object_id == "tray_chest_0"] == [True]
 
 

@@ -1,11 +1,12 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.verify import Policy, verify_home
+from pipeline.verify import verify_home
 from schemas import JOINTS
 from tests.geometry.furniture import LIBRARY, home, moved_placements, moved_plan, one_room, placed, two_rooms
 from tests.judging import SETTINGS
@@ -119,7 +120,7 @@ def test_rooms_that_hang_together():
     cut = judge(placed("block", 3.6, 0.9, math.pi / 2, room="living"), plan=two_rooms())
     assert [r.connected for r in cut.rooms] == [True, False]
     assert cut.rooms[1].walkable_free == 0
-    assert [code for code, _ in cut.faults(Policy(clear=0.0))] == ["room_cut_off"]
+    assert [code for code, _ in cut.faults(replace(SETTINGS.policy, clear=0.0))] == ["room_cut_off"]
 
 
 def test_walkable_paper_is_the_papers_formula():
@@ -144,7 +145,7 @@ def test_rows_fit_the_schema():
     assert JOINTS.from_rows(found.joint_rows()).num_rows == 3
     assert found.scene_figures()["joints"] == 3
     assert set(found.room_figures()) == {"room"}
-    assert found.ok(Policy())
+    assert found.ok(SETTINGS.policy)
 
 
 @settings(max_examples=15, deadline=None)

@@ -16,7 +16,7 @@ from pipeline.floorplan.language.lexicon import STRONG
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.text import fold, tokenize, words
+from pipeline.floorplan.language.text import fold, has_minus, tokenize, words
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence
 from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
@@ -26,6 +26,7 @@ COMMAS = STOPS | {",", "、"}
 MOST, MOST_WORDS = 1e6, 6  # of any amount, and of a numeral
 NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
 MOST_SEATS = 16
+LEADS = ("with", "in", "is", "and", "article", "least", "most", "exactly", "between")  # behind these a dash before a number is no list's
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 
 
@@ -184,7 +185,9 @@ class Scan:
         """Return (length, value) of a numeral at word k; of "8 to 10" only the first is read here."""
         inside = 0 <= k < len(self.words) and self.length(k, "name") < 2
         end, value = self.numbers.get(self.words[k].start, (0, None)) if inside else (0, None)
-        return sum(w.start < end for w in self.words[k : k + MOST_WORDS]), value
+        signed = value and has_minus(self.prompt, self.words[k].start)
+        led = signed and (self.text(k - 1) == "(" or any(self.length(k - n, *LEADS) == n for n in (1, 2, 3)))  # "a bed -2 chairs" is a list
+        return sum(w.start < end for w in self.words[k : k + MOST_WORDS]), -value if value and led else value
 
     def amount(self, k: int) -> tuple[int, int, int | None] | None:
         """Return (length, least, most) of an amount at word k: bounds, ranges, articles, negations."""
@@ -339,16 +342,20 @@ class Scan:
 def read_furniture(prompt: str) -> tuple[str, list[Claim]]:
     """Return the prompt without its wishes for furniture (blanks in their place, so that places hold), and the wishes.
 
-    Raises ImpossibleError for more things than any room may have, and for a share of floor above 100 %.
+    Raises ImpossibleError for more things than any room may have or fewer than none, and for a share of floor above 100 %.
     """
     scan = Scan(prompt)
     claims = scan.run()
     if not claims:
         return prompt, claims
-    for c in (c for c in claims if max(c.least, c.most or 0) > MAX_PIECES or c.value > 1.0):
-        said = [Evidence(start=c.start, end=c.end, text=prompt[c.start : c.end], field="furniture")]
-        what, most = (f"{c.value:.0%} of a floor", "100%") if c.value else (f"{max(c.least, c.most or 0)} things", MAX_PIECES)
-        raise ImpossibleError(f"{what} are asked for", f"ask for {most} at most", said)
+    for c in claims:
+        least, most, start = min(c.least, c.most or 0, c.value), max(c.least, c.most or 0), c.start - has_minus(prompt, c.start)
+        if least >= 0 and most <= MAX_PIECES and c.value <= 1.0:
+            continue
+        said = [Evidence(start=start, end=c.end, text=prompt[start : c.end], field="furniture")]
+        what, advice = (f"{c.value:.0%} of a floor", "100% at most") if c.value else (f"{most} things", f"{MAX_PIECES} at most")
+        what, advice = ("fewer than none", "numbers above zero") if least < 0 else (what, advice)
+        raise ImpossibleError(f"{what} are asked for", f"ask for {advice}", said)
     text = list(prompt)
     for w, gone in zip(scan.words, _blank(scan, claims), strict=True):
         if gone:

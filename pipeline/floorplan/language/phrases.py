@@ -6,6 +6,7 @@ from typing import Any
 
 from pipeline.floorplan.language.lexicon import Lexicon, kinds
 from pipeline.floorplan.language.marks import HEADS, LEADING, Mark, Words
+from pipeline.floorplan.language.text import has_minus
 from pipeline.floorplan.program.consistency import ImpossibleError
 
 DROPPED = kinds("dropped")
@@ -241,8 +242,8 @@ def refuse(marks: Sequence[Mark], words: Words) -> None:
     named = any(m.kind in HEADS for m in marks)
     for k, mark in enumerate(marks):
         place = words.tokens[mark.first].start if mark.first < len(words.tokens) else 0
-        minus = mark.kind in {"num", "amount"} and place > 1 and words.prompt[place - 1] in "-−" and words.prompt[place - 2] == " "
-        lead = k and marks[k - 1].kind in {"cue", "fill", "bound", "of", "det", "verb"}
+        minus = mark.kind in {"num", "amount", "people"} and has_minus(words.prompt, place)
+        lead = mark.kind == "people" or (k and marks[k - 1].kind in {"cue", "fill", "bound", "of", "det", "verb"})
         none = mark.kind == "amount" and not mark.number and mark.value in {"area", "rooms"}
         empty = (mark.kind, mark.value) == ("unit", "rooms") and k and marks[k - 1].kind == "neg" and not named
         if mark.kind in CONFLICTS or (minus and lead) or none or empty:

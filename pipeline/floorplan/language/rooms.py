@@ -251,7 +251,8 @@ def _within(state: Reading, e: Mark, count: float) -> None:
     if count > MAX_ROOMS or (count > len(same) and any(r.whole for r in same)):
         words = dict.fromkeys(state.heard.quote(*r.span, "rooms") for r in same if r.span is not None)
         what = f"{count:g} {e.type.replace('_', ' ')}s are asked for" + (f", and {len(same)} besides" if same else "")
-        raise ImpossibleError(what, "keep one of the two counts", [*words, state.heard.quote(max(e.first - 1, 0), e.last, "rooms")])
+        advice = "keep one of the two counts" if same else f"ask for {MAX_ROOMS} at most"
+        raise ImpossibleError(what, advice, [*words, state.heard.quote(max(e.first - 1, 0), e.last, "rooms")])
 
 
 def _by_role(state: Reading, sentence: list[Mark], k: int, role: str, level: int | None) -> list[Named]:

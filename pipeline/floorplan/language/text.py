@@ -96,6 +96,11 @@ def _number(raw: str) -> float | None:
     return float(raw.replace(",", "."))
 
 
+def has_minus(prompt: str, place: int) -> bool:
+    """Whether a minus sign stands right before the number at a place of a prompt; "2-3" and "level-2" are none."""
+    return place > 1 and prompt[place - 1] in "-−–" and (prompt[place - 2] in " (" or is_han(prompt[place - 2]))
+
+
 def is_han(char: str) -> bool:
     """Whether a character is a Chinese one."""
     first, _, last = characters()["han"]

@@ -47,6 +47,7 @@ class Terms(NamedTuple):
 
 
 TERMS = Terms._fields
+NOTHING = Terms(*(0.0,) * len(TERMS))
 TONGUE = 0.76  # m between inner faces: no part of a room is narrower
 TOGETHER = 12.0  # weight of what belongs together, beside the twelve
 SLIM, STEEP = 2.2, 4.0  # ratio of sides from which on a room is a corridor, and how much more it costs then
@@ -285,7 +286,7 @@ def terms(
     n = spec.target.size
     for i in range(n):
         if not simple(out, i):
-            return Terms(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), np.inf
+            return NOTHING, np.inf
     hard = 0.0
     bent = 0
     for i in range(n):

@@ -262,14 +262,43 @@ def test_several_homes_are_refused_with_the_command_that_makes_them(prompt):
     assert "--count" in caught.value.remedy
 
 
+BELOW_ZERO = [
+    "a bedroom with -2 chairs",
+    "a bedroom with −2 chairs",
+    "a bedroom (-2 chairs)",
+    "a bedroom with at least -2 chairs",
+    "a bedroom and between -2 and 3 chairs",
+    "a flat with -70% free floor",
+    "a flat for -3 people",
+    "ein Schlafzimmer mit -2 Stühlen",
+    "une chambre avec -2 chaises",
+    "un dormitorio con -2 sillas",
+    "卧室里有-2把椅子",
+    "一套公寓,有-2个卧室",
+]
+
+
 @pytest.mark.parametrize(
     ("prompt", "remedy"),
-    [("300% free", "100%"), ("a two-bedroom flat, 300 % free", "100%"), ("a bedroom with 500 chairs", "200 at most")],
+    [
+        ("300% free", "100%"),
+        ("a two-bedroom flat, 300 % free", "100%"),
+        ("a bedroom with 500 chairs", "200 at most"),
+        ("500 bedrooms", "40 at most"),
+        *((prompt, "above zero") for prompt in BELOW_ZERO),
+    ],
 )
 def test_what_no_room_can_have_is_refused_with_what_one_can(prompt, remedy):
     with pytest.raises(ImpossibleError) as caught:
         parse(prompt)
     assert remedy in caught.value.remedy
+
+
+@pytest.mark.parametrize(
+    "prompt", ["a bedroom with a bed -2 chairs -a desk", "a bedroom with 2 -3 chairs", "-2 chairs\n-1 bed in the bedroom"]
+)
+def test_a_dash_that_lists_or_spans_is_no_minus(prompt):
+    assert any(c.category == "any_chair" and c.min == 2 for r in parse(prompt).rooms for c in r.furniture.counts)
 
 
 def test_the_other_of_one_room_has_its_own_furniture():
