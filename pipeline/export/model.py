@@ -147,8 +147,8 @@ class Model:
         """Return the model without the colliders of these prims."""
 
         def kept(body: Body) -> Body:
-            boxes, hulls = (tuple(c for c in colliders if c.prim not in off) for colliders in (body.boxes, body.hulls))
-            return replace(body, boxes=boxes, hulls=hulls)
+            boxes, hulls = (box for box in body.boxes if box.prim not in off), (hull for hull in body.hulls if hull.prim not in off)
+            return replace(body, boxes=tuple(boxes), hulls=tuple(hulls))
 
         return replace(self, bodies=tuple(map(kept, self.bodies))) if off else self
 

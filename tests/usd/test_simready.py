@@ -64,7 +64,9 @@ def test_what_stands_still_in_a_home_is_a_body_of_its_own_weight_as_a_prop(tmp_p
     write_library([chair], tmp_path / "library")
     interface = Sdf.Layer.FindOrOpen(str(tmp_path / f"library/{chair.asset_id}/{chair.asset_id}.usda"))
     assert not interface.customLayerData["SimReady_Metadata"]["rigid_body_count"]
-    path = runpy.run_path(str(EXAMPLE))["package"](tmp_path / "library" / chair.asset_id, tmp_path / "out", "somebody", dt.date(2026, 11, 23))
+    path = runpy.run_path(str(EXAMPLE))["package"](
+        tmp_path / "library" / chair.asset_id, tmp_path / "out", "somebody", dt.date(2026, 11, 23)
+    )
     stage = Usd.Stage.Open(str(path))
     assert [p for p in stage.Traverse() if p.HasAPI(UsdPhysics.RigidBodyAPI)] == [stage.GetDefaultPrim()]
     assert UsdPhysics.MassAPI(stage.GetDefaultPrim()).GetMassAttr().Get() == pytest.approx(sum(link.mass for link in chair.links))
