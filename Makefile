@@ -41,7 +41,8 @@ test: $(DEV) ## all tests
 
 # without what they only draw and convert with (OpenCV, embreex, by which trimesh would shoot rays otherwise than the factory's)
 engines: $(DEV) ## SAPIEN and yourdfpy for the tests that want them: 7 s, 140 MB
-	python -m pip install --quiet --no-compile --no-deps -c constraints.txt 'sapien>=3.0,<4' 'yourdfpy>=0.0.60' transforms3d lxml
+	@python -m pip install --quiet --no-compile --no-deps -c constraints.txt 'sapien>=3.0,<4' 'yourdfpy>=0.0.60' transforms3d lxml \
+		|| { echo "sfgen: no package index that can be reached has SAPIEN and yourdfpy; without them \`make test\` skips what wants them" >&2; exit 1; }
 
 check: $(DEV) ## format, lint, types, imports
 	ruff format --check

@@ -75,6 +75,7 @@ def load(scene: sapien.Scene, home: Path, loader: type[URDFLoader] = URDFLoader)
         placed[name] = builder.build()
         if name != "building" and isinstance(placed[name], sapien.physx.PhysxArticulation):
             set_friction(builder, placed[name].find_joint_by_name)
+            placed[name].set_qpos(placed[name].qpos)  # or its links but the root stand about the origin until the first step
     return placed
 
 

@@ -14,7 +14,7 @@ import json
 import shutil
 from pathlib import Path
 
-from pxr import Sdf, UsdUtils
+from pxr import Sdf, Usd, UsdPhysics, UsdUtils
 
 ITEMS = {"cabinet": "Q14745", "stool": "Q14745", "appliance": "Q212920"}  # furniture, home appliance; others have a label of their own
 ASIDE = (".thumbs", "runnables")  # folders that stay beside the interface
@@ -50,6 +50,7 @@ def package(asset: Path, out: Path, author: str, day: dt.date) -> Path | None:
     moved = Sdf.Layer.CreateAnonymous(".usda")
     moved.TransferContent(interface)
     moved.customLayerData = {**moved.customLayerData, "usd_date_generated": day.isoformat()}
+    make_body(moved)
     own = f"{RUNTIME}/{asset.name}_mujoco.usda"  # in a dataset named after its asset: packed together, files of one name would be one
     if (folder / own).is_file():
         (folder / own).rename(folder / RUNTIME / "mujoco.usda")
@@ -60,6 +61,16 @@ def package(asset: Path, out: Path, author: str, day: dt.date) -> Path | None:
     moved.Export(str(path))
     path.with_suffix(".json").write_text(json.dumps({"author": author, "qcode": item}, indent=1))
     return path
+
+
+def make_body(interface: Sdf.Layer) -> None:
+    """Make furniture that stands still, which has colliders and no body in a dataset, one body that can be pushed (RB.001)."""
+    about = interface.customLayerData["SimReady_Metadata"]
+    if not about["rigid_body_count"]:
+        stage = Usd.Stage.Open(interface, Usd.Stage.LoadNone)
+        UsdPhysics.RigidBodyAPI.Apply(stage.GetDefaultPrim())
+        UsdPhysics.MassAPI.Apply(stage.GetDefaultPrim()).CreateMassAttr(about["mass"])
+        interface.customLayerData = {**interface.customLayerData, "SimReady_Metadata": {**about, "rigid_body_count": 1}}
 
 
 def wikidata_item(interface: Sdf.Layer) -> str:

@@ -104,10 +104,13 @@ def _write_home(scene: Scene, place: Path, form: str) -> None:
     if form == "mjcf":
         (place / f"{scene.scene_id}.xml").write_bytes(scene_xml(scene, folders))
         return
-    files = {name: f"{folder}/{name}.urdf" if scene.models[name].shared else f"{name}.urdf" for name, folder in folders.items()}
-    for model in own:
-        if not model.still:
-            _write_urdf(model, place / files[model.name], folders[model.name])
+    files = {}
+    for placed in scene.placed:
+        model = scene.models[placed.model]
+        as_it_lies = model.shared and not placed.off
+        files[placed.name] = f"{folders[model.name]}/{model.name}.urdf" if as_it_lies else f"{placed.name}.urdf"
+        if not as_it_lies and not model.still:
+            _write_urdf(model.without(placed.off), place / files[placed.name], folders[model.name])
     (place / "building.urdf").write_bytes(building_urdf(scene, folders))
     write_json(place / "home.json", placements(scene, files))
 

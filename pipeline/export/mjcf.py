@@ -44,7 +44,7 @@ class _Writer:
 
     def place(self, placed: Placed) -> None:
         """Write one placed model."""
-        model = self._models[placed.model]
+        model = self._models[placed.model].without(placed.off)
         children: dict[int, list[Joint]] = {}
         for joint in model.joints:
             children.setdefault(joint.parent, []).append(joint)

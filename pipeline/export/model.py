@@ -4,7 +4,7 @@ Metres, kilograms, radians, Z up; lengths within a body are in the body's frame.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -48,21 +48,23 @@ class Surface:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Box:
-    """A collider: a box along its body's axes, `center` (3,) and half extents `half` (3,) [m]."""
+    """A collider: a box along its body's axes, `center` (3,) and half extents `half` (3,) [m]; `prim` is its path below the model's root."""
 
     center: Floats
     half: Floats
     friction: float
+    prim: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hull:
-    """A collider: the convex hull of `points` (n, 3) with triangles `faces` (m, 3)."""
+    """A collider: the convex hull of `points` (n, 3) with triangles `faces` (m, 3); `prim` is its path below the model's root."""
 
     name: str
     points: NDArray[np.float32]
     faces: NDArray[np.int32]
     friction: float
+    prim: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,10 +143,22 @@ class Model:
         """Return the materials of all surfaces, each once."""
         return list(dict.fromkeys(surface.material for surface in self.surfaces()))
 
+    def without(self, off: frozenset[str]) -> "Model":
+        """Return the model without the colliders of these prims."""
+
+        def kept(body: Body) -> Body:
+            boxes, hulls = (box for box in body.boxes if box.prim not in off), (hull for hull in body.hulls if hull.prim not in off)
+            return replace(body, boxes=tuple(boxes), hulls=tuple(hulls))
+
+        return replace(self, bodies=tuple(map(kept, self.bodies))) if off else self
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Placed:
-    """A model in a home: where, and at which `scale` (3,), which is 1 for what moves. `support` is what it stands on."""
+    """A model in a home: where, and at which `scale` (3,), which is 1 for what moves. `support` is what it stands on.
+
+    `off` are the prims of its colliders that the home switches off, because others are felt there.
+    """
 
     name: str
     kind: str
@@ -152,6 +166,7 @@ class Placed:
     T_world_model: Floats
     scale: Floats
     support: str
+    off: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -33,9 +33,9 @@ def world(cache: UsdGeom.XformCache, prim: Usd.Prim) -> Floats:
 
 
 def read_pieces(
-    body: Usd.Prim, T_world_body: Floats, cache: UsdGeom.XformCache, others: set[Sdf.Path]
+    body: Usd.Prim, root: Usd.Prim, T_world_body: Floats, cache: UsdGeom.XformCache, others: set[Sdf.Path]
 ) -> tuple[tuple[Surface, ...], tuple[Box, ...], tuple[Hull, ...], Floats | None]:
-    """Return surfaces, boxes, hulls and the middle of the handles of a body, down to where `others` (other bodies) begin."""
+    """Return surfaces, boxes, hulls and the middle of the handles of a body below `root`, down to where `others` (other bodies) begin."""
     visuals: defaultdict[tuple[str, Material], list[Corners]] = defaultdict(list)
     boxes: list[Box] = []
     hulls: list[Hull] = []
@@ -44,7 +44,7 @@ def read_pieces(
         points, counts, indices = _polygons(prim)
         points = points @ T[:3, :3].T + T[:3, 3]
         if prim.HasAPI(UsdPhysics.CollisionAPI) and UsdPhysics.CollisionAPI(prim).GetCollisionEnabledAttr().Get():
-            collider = _collider(prim, points, len(hulls), body)
+            collider = _collider(prim, points, f"{body.GetName()}_hull_{len(hulls)}", str(prim.GetPath().MakeRelativePath(root.GetPath())))
             if isinstance(collider, Box):
                 boxes.append(collider)
             else:
@@ -83,8 +83,8 @@ def _polygons(prim: Usd.Prim) -> tuple[Floats, NDArray[np.int64], NDArray[np.int
     return points, counts, indices
 
 
-def _collider(prim: Usd.Prim, points: Floats, number: int, body: Usd.Prim) -> Box | Hull:
-    """Return a collider: a box where its corners are those of one, otherwise the hull."""
+def _collider(prim: Usd.Prim, points: Floats, name: str, path: str) -> Box | Hull:
+    """Return a collider: a box where its corners are those of one, otherwise the hull, by the name `name`."""
     approximation = "convexHull"
     if prim.IsA(UsdGeom.Mesh):
         approximation = UsdPhysics.MeshCollisionAPI(prim).GetApproximationAttr().Get() or "none"
@@ -93,7 +93,7 @@ def _collider(prim: Usd.Prim, points: Floats, number: int, body: Usd.Prim) -> Bo
     corner = np.abs(points - low).clip(max=np.abs(points - high))  # distance to the nearer face, along each axis
     octants = {tuple(row) for row in (points > (low + high) / 2).tolist()}
     if approximation == "boundingCube" or (len(octants) == 8 and corner.max() < SQUARE):
-        return Box((low + high) / 2, (high - low) / 2, friction)
+        return Box((low + high) / 2, (high - low) / 2, friction, path)
     if approximation != "convexHull":
         raise ContentError(f"{prim.GetPath()} collides as {approximation!r}", "only convex hulls and boxes mean the same in every format")
     hull = ConvexHull(points)
@@ -103,7 +103,7 @@ def _collider(prim: Usd.Prim, points: Floats, number: int, body: Usd.Prim) -> Bo
     a, b, c = (corners[faces[:, k]] for k in range(3))
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
     faces[inward] = faces[inward][:, ::-1]
-    return Hull(f"{body.GetName()}_hull_{number}", corners.astype(np.float32), faces.astype(np.int32), friction)
+    return Hull(name, corners.astype(np.float32), faces.astype(np.int32), friction, path)
 
 
 def _corners(prim: Usd.Prim, T: Floats, points: Floats, counts: NDArray[np.int64], indices: NDArray[np.int64]) -> Corners:

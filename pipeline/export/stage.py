@@ -39,7 +39,7 @@ def read_home(path: Path, scene_id: str, asset: Callable[[Path], Model]) -> Scen
             raise ContentError(f"{path}: {prim.GetPath()} moves and is scaled", REMEDY)
         support = prim.GetRelationship("sfgen:support")
         on = support.GetTargets()[0].name if support and support.GetTargets() else ""
-        placed.append(Placed(prim.GetName() if source else model.name, kind, model.name, rigid, scale, on))
+        placed.append(Placed(prim.GetName() if source else model.name, kind, model.name, rigid, scale, on, _switched_off(prim)))
     asleep = stage.GetAttributeAtPath("/PhysicsScene.mjc:option:sleep_tolerance")
     return Scene(scene_id, models, tuple(placed), float(asleep.Get()) if asleep else 0.0)
 
@@ -88,12 +88,18 @@ def _reference(prim: Usd.Prim) -> Path | None:
     return None
 
 
+def _switched_off(root: Usd.Prim) -> frozenset[str]:
+    """Return the paths below `root` of what the stage has made inactive."""
+    below = Usd.PrimRange(root, Usd.PrimAllPrimsPredicate)
+    return frozenset(str(p.GetPath().MakeRelativePath(root.GetPath())) for p in below if not p.IsActive())
+
+
 def _body(prim: Usd.Prim, root: Usd.Prim, cache: UsdGeom.XformCache, others: set[Sdf.Path]) -> Body:
     T_world_body = world(cache, prim)
     T_model_body = inverse(world(cache, root)) @ T_world_body
     if np.abs(T_model_body[:3, :3] @ T_model_body[:3, :3].T - np.eye(3)).max() > 1e-5:
         raise ContentError(f"{prim.GetPath()} is a scaled body", REMEDY)
-    surfaces, boxes, hulls, handle = read_pieces(prim, T_world_body, cache, others - {prim.GetPath()})
+    surfaces, boxes, hulls, handle = read_pieces(prim, root, T_world_body, cache, others - {prim.GetPath()})
     name = prim.GetName() if prim != root else "base"
     return Body(name, T_model_body, _inertia(prim), surfaces, boxes, hulls, handle)
 

@@ -1,6 +1,7 @@
 """URDF: a file per thing that moves, one for all that stands still in a home, and a list of where they stand.
 
-URDF knows one robot a file, so a home is `home.json` beside its files; things of the library lie in the library's folder.
+URDF knows one robot a file, so a home is `home.json` beside its files; things of the library lie in the library's folder,
+but for those of which the home switches colliders off: they have a file of their own in the home, which takes its meshes from the library.
 A link's frame lies in its joint, as the format wants it, and is turned as its body is in USD.
 """
 
@@ -55,7 +56,7 @@ def building_urdf(scene: Scene, folders: Mapping[str, str]) -> bytes:
     robot = Element("robot", name=scene.scene_id)
     SubElement(robot, "link", name="building")
     for placed in scene.placed:
-        model = scene.models[placed.model]
+        model = scene.models[placed.model].without(placed.off)
         if model.still:
             for body in model.bodies:
                 name = placed.name if len(model.bodies) == 1 else f"{placed.name}_{body.name}"
@@ -65,12 +66,12 @@ def building_urdf(scene: Scene, folders: Mapping[str, str]) -> bytes:
 
 
 def placements(scene: Scene, files: Mapping[str, str]) -> dict[str, Any]:
-    """Return home.json: what to load, where. `files` say where each moving model's URDF lies, as seen from the home."""
+    """Return home.json: what to load, where. `files` say where the URDF of each moving thing lies, as seen from the home."""
     placed = [
         {
             "name": p.name,
             "kind": p.kind,
-            "urdf": files[p.model],
+            "urdf": files[p.name],
             "position": [round(v, 12) for v in p.T_world_model[:3, 3].tolist()],
             "orientation": [round(v, 12) for v in quaternion(p.T_world_model).tolist()],
             "fixed": bool(scene.models[p.model].grounded) or any(j.parent < 0 for j in scene.models[p.model].joints),

@@ -1,14 +1,14 @@
 """Stages and what was exported from them, read again by code that shares nothing with the exporter, and compared.
 
 USD is read through pxr, MJCF with MuJoCo, URDF and GLB by their specifications. Compared are, in the world frame: joint origins, axes,
-limits, and of every body its mass, its centre and its inertia tensor.
+limits, and of every body its mass, its centre and its inertia tensor; and how many colliders a link has, of which GLB knows nothing.
 """
 
 import json
 import math
 import struct
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -39,10 +39,11 @@ class Body(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """What a file says: joints by (object, joint), bodies by (object, link)."""
+    """What a file says: joints by (object, joint), bodies by (object, link); how many colliders each link has that has any."""
 
     joints: dict[tuple[str, str], Joint]
     bodies: dict[tuple[str, str], Body]
+    colliders: Counter[tuple[str, str]] | None = None
 
 
 def _rotation_matrix(rotation: Any) -> Gf.Matrix3d:
@@ -53,7 +54,7 @@ def _rotation_matrix(rotation: Any) -> Gf.Matrix3d:
 def from_usd(path: Path) -> Reading:
     """Read a home's stage."""
     stage = Usd.Stage.Open(str(path))
-    joints, bodies = {}, {}
+    joints, bodies, colliders = {}, {}, Counter()
     for prim in stage.Traverse():
         name = tuple(str(prim.GetPath()).split("/")[3:])
         matrix: Any = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(0) if prim.IsA(UsdGeom.Xformable) else None
@@ -62,6 +63,10 @@ def from_usd(path: Path) -> Reading:
             R = np.array((_rotation_matrix(api.GetPrincipalAxesAttr().Get()) * matrix.ExtractRotationMatrix()).GetTranspose())
             center = np.array(matrix.Transform(Gf.Vec3d(api.GetCenterOfMassAttr().Get())))
             bodies[name[0], name[-1]] = Body(api.GetMassAttr().Get(), center, R @ np.diag(api.GetDiagonalInertiaAttr().Get()) @ R.T)
+        if prim.HasAPI(UsdPhysics.CollisionAPI):
+            above = (p.name for p in prim.GetPath().GetPrefixes() if stage.GetPrimAtPath(p).HasAPI(UsdPhysics.RigidBodyAPI))
+            thing = f"wall_{name[0]}" if "/Walls/" in str(prim.GetPath()) else name[0]
+            colliders[thing, next(above, "base")] += 1
         if prim.IsA(UsdPhysics.RevoluteJoint) or prim.IsA(UsdPhysics.PrismaticJoint):
             get = {a.GetBaseName(): a.Get() for a in prim.GetAttributes()}
             child = UsdGeom.Xformable(
@@ -71,7 +76,7 @@ def from_usd(path: Path) -> Reading:
             axis = child.TransformDir(local * _rotation_matrix(get["localRot1"]))
             limits = [math.radians(v) if prim.IsA(UsdPhysics.RevoluteJoint) else v for v in (get["lowerLimit"], get["upperLimit"])]
             joints[name[0], name[-1]] = Joint(np.array(child.Transform(Gf.Vec3d(get["localPos1"]))), np.array(axis), *limits)
-    return Reading(joints, bodies)
+    return Reading(joints, bodies, colliders)
 
 
 def from_mjcf(path: Path) -> Reading:
@@ -91,12 +96,15 @@ def from_mjcf(path: Path) -> Reading:
             R = data.ximat[i].reshape(3, 3)
             tensor = R @ np.diag(model.body_inertia[i]) @ R.T
             bodies[_split(model.body(i).name)] = Body(float(model.body_mass[i]), data.xipos[i].copy(), tensor)
-    return Reading(joints, bodies)
+    collide = np.flatnonzero(model.geom_contype)
+    return Reading(joints, bodies, Counter(_split(model.body(model.geom_bodyid[k]).name) for k in collide))
 
 
 def from_urdf(path: Path) -> Reading:
     """Read home.json and the files that it names."""
-    joints, bodies = {}, {}
+    joints, bodies, colliders = {}, {}, Counter()
+    for link in parse(path.parent / json.loads(path.read_text(encoding="utf-8"))["building"]).getroot().iter("link"):
+        colliders[link.get("name"), "base"] += len(link.findall("collision"))
     for placed in json.loads(path.read_text(encoding="utf-8"))["placed"]:
         robot = parse(path.parent / placed["urdf"]).getroot()
         carried = {j.find("child").get("link"): j for j in robot.iter("joint")}
@@ -115,12 +123,13 @@ def from_urdf(path: Path) -> Reading:
                 bounds = (float(limit.get(k, s)) for k, s in (("lower", "-inf"), ("upper", "inf")))
                 joints[placed["name"], joint.get("name")] = Joint(T[:3, 3], T[:3, :3] @ _floats(joint.find("axis").get("xyz")), *bounds)
         for link in robot.iter("link"):
+            colliders[placed["name"], link.get("name")] += len(link.findall("collision"))
             if (inertial := link.find("inertial")) is not None:
                 T, i = at(link.get("name")) @ _origin(inertial), {k: float(v) for k, v in inertial.find("inertia").items()}
                 tensor = np.array([[i["ixx"], i["ixy"], i["ixz"]], [i["ixy"], i["iyy"], i["iyz"]], [i["ixz"], i["iyz"], i["izz"]]])
                 mass = float(inertial.find("mass").get("value"))
                 bodies[placed["name"], link.get("name")] = Body(mass, T[:3, 3], T[:3, :3] @ tensor @ T[:3, :3].T)
-    return Reading(joints, bodies)
+    return Reading(joints, bodies, +colliders)
 
 
 def from_glb(path: Path) -> Reading:
@@ -178,6 +187,8 @@ def deviations(one: Reading, other: Reading) -> dict[str, float]:
         note("masses", (c.mass - d.mass) / c.mass)
         note("centres of mass [m]", c.center - d.center)
         note("inertias", (c.inertia - d.inertia) / np.abs(c.inertia).max())
+    if one.colliders is not None and other.colliders is not None:
+        note("colliders", max((abs(one.colliders[link] - other.colliders[link]) for link in {*one.colliders, *other.colliders}), default=0))
     return dict(largest)
 
 

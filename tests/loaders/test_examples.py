@@ -1,5 +1,6 @@
 """The examples run, as programs, on a dataset."""
 
+import json
 import math
 import re
 import runpy
@@ -8,6 +9,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import sfgen
@@ -116,6 +118,9 @@ def test_sapien_takes_pairs_that_pass_and_friction_as_the_urdf_means_them(export
         for name, thing in things.items()
     }
     assert len(set.union(*same.values())) == sum(map(len, same.values())) == len(things) > 4
+    knob, about = things["cabinet_0"].find_link_by_name("knob"), json.loads(home.read_text())
+    at = next(thing["position"] for thing in about["placed"] if thing["name"] == "cabinet_0")
+    assert np.linalg.norm(knob.entity.pose.p - at) < 1.5  # links stand where the thing does before any step
     slide = things["cabinet_0"].find_joint_by_name("drawer_slide")
     resistance = re.search(
         rf'<joint name="{slide.name}".*?friction="([^"]+)"', (home.parents[2] / "assets/cabinet_a/cabinet_a.urdf").read_text(), re.DOTALL

@@ -8,7 +8,7 @@ import runpy
 from pathlib import Path
 
 import pytest
-from pxr import Sdf, Usd
+from pxr import Sdf, Usd, UsdPhysics
 
 from pipeline.usd import write_library
 from pipeline.usd.check import check_stage
@@ -58,3 +58,17 @@ def test_the_variant_is_where_the_metadata_says_it_is_and_its_file_has_the_runti
         variant = layer.GetPrimAtPath(said["prim"]).variantSets[said["variantSetName"]].variants[said["activateOption"]]
         assert [arc.assetPath for arc in variant.primSpec.payloadList.prependedItems] == [f"./runnables/physics/{file}"]
         assert [p.name for p in (interface.parent / "runnables/physics").iterdir()] == [file]
+
+
+def test_what_stands_still_in_a_home_is_a_body_of_its_own_weight_as_a_prop(tmp_path, chair):
+    write_library([chair], tmp_path / "library")
+    interface = Sdf.Layer.FindOrOpen(str(tmp_path / f"library/{chair.asset_id}/{chair.asset_id}.usda"))
+    assert not interface.customLayerData["SimReady_Metadata"]["rigid_body_count"]
+    path = runpy.run_path(str(EXAMPLE))["package"](
+        tmp_path / "library" / chair.asset_id, tmp_path / "out", "somebody", dt.date(2026, 11, 23)
+    )
+    stage = Usd.Stage.Open(str(path))
+    assert [p for p in stage.Traverse() if p.HasAPI(UsdPhysics.RigidBodyAPI)] == [stage.GetDefaultPrim()]
+    assert UsdPhysics.MassAPI(stage.GetDefaultPrim()).GetMassAttr().Get() == pytest.approx(sum(link.mass for link in chair.links))
+    assert stage.GetRootLayer().customLayerData["SimReady_Metadata"]["rigid_body_count"] == 1
+    check_stage(path)
