@@ -1,6 +1,7 @@
 """The mesh files and primitives that the shapes of a URDF name, each file read once."""
 
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 
@@ -48,25 +49,32 @@ class MeshFiles:
             self._places[mesh] = next((way for way in ways if self.folder.has(way, self.base)), tails[1])
         return self._places[mesh]
 
-    def geometry(self, shape: Shape, T: Floats) -> list[tuple[ObjGroup, ObjFile, Floats]]:
-        """Return the groups of a shape of a link at T (4, 4), with their file and its vertices there.
+    def geometry(self, shapes: Sequence[Shape], T: Floats) -> Iterator[tuple[Shape, ObjGroup, ObjFile, Floats]]:
+        """Yield the groups of the shapes of a link at T (4, 4), with their shape, file and its vertices there.
 
-        A mirrored scale turns the faces. Raises SourceError for a file that is broken, too large or outside the folder.
+        A mirrored scale turns the faces. Raises SourceError for a file that is broken, too large or outside the folder, before
+        any of the shapes costs more than a look.
         """
-        if not shape.mesh and not shape.primitive[0]:
-            return []
-        file = self._file(shape.mesh) if shape.mesh else _solid(*primitive(*shape.primitive, shape.name))
-        if file is None:
-            return []
-        self.total += sum(len(g.faces) for g in file.groups)
-        if self.total > MAX_TOTAL:
-            raise SourceError("too_large", shape.mesh, f"more than {MAX_TOTAL} triangles in all")
-        T_shape = T @ shape.T
-        points = (file.vertices * shape.scale) @ T_shape[:3, :3].T + T_shape[:3, 3]
-        groups = file.groups
-        if np.prod(shape.scale) < 0:
-            groups = tuple(replace(g, faces=g.faces[:, ::-1], uv_faces=g.uv_faces[:, ::-1]) for g in groups)
-        return [(group, file, points) for group in groups if len(group.faces)]
+        files = [self._of(shape) for shape in shapes]
+        for shape, file in zip(shapes, files, strict=True):
+            self.total += sum(len(g.faces) for g in file.groups) if file else 0
+            if self.total > MAX_TOTAL:
+                raise SourceError("too_large", shape.mesh, f"more than {MAX_TOTAL} triangles in all")
+        for shape, file in zip(shapes, files, strict=True):
+            if file is None:
+                continue
+            T_shape = T @ shape.T
+            points = (file.vertices * shape.scale) @ T_shape[:3, :3].T + T_shape[:3, 3]
+            groups = file.groups
+            if np.prod(shape.scale) < 0:
+                groups = tuple(replace(g, faces=g.faces[:, ::-1], uv_faces=g.uv_faces[:, ::-1]) for g in groups)
+            yield from ((shape, group, file, points) for group in groups if len(group.faces))
+
+    def _of(self, shape: Shape) -> ObjFile | None:
+        """Return a shape's triangles: its mesh file, a primitive as one, or None."""
+        if shape.mesh:
+            return self._file(shape.mesh)
+        return _solid(*primitive(*shape.primitive, shape.name)) if shape.primitive[0] else None
 
     def _file(self, path: str) -> ObjFile | None:
         """Return a mesh file, read once; a missing one is noted."""

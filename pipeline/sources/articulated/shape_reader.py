@@ -60,8 +60,7 @@ class ShapeReader:
             body.visuals += self._visuals(link, T[name], len(body.visuals))
             if link.visuals or link.collisions:
                 body.inertials.append(link.inertial and link.inertial.moved(T[name]))
-            for entry in link.collisions:
-                body.collisions += [(points, group.faces) for group, _, points in self.files.geometry(entry, T[name])]
+            body.collisions += [(points, group.faces) for _, group, _, points in self.files.geometry(link.collisions, T[name])]
         self._borrow_looks(bodies, body_of)
         shape = ArticulatedShape(source, source_id, model_cat, bodies, joints, [], self.palette, self.notes)
         joint_rules.drop_empty(shape, {body_of[name]: word for name, word in self.hints.named.items() if name in body_of})
@@ -120,14 +119,13 @@ class ShapeReader:
 
     def _visuals(self, link: UrdfLink, T: Floats, start: int) -> list[Mesh]:
         meshes: list[Mesh] = []
-        for shape in link.visuals:
-            for group, file, points in self.files.geometry(shape, T):
-                extent = np.ptp(points[np.unique(group.faces)], axis=0)
-                part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=link.name in self.moving)
-                material = self._material(shape, file, group)
-                mesh = visual(group, file, points, f"mesh_{start + len(meshes):03d}", material, part)
-                if mesh:
-                    meshes.append(mesh)
+        for shape, group, file, points in self.files.geometry(link.visuals, T):
+            extent = np.ptp(points[group.faces.ravel()], axis=0)
+            part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=link.name in self.moving)
+            material = self._material(shape, file, group)
+            mesh = visual(group, file, points, f"mesh_{start + len(meshes):03d}", material, part)
+            if mesh:
+                meshes.append(mesh)
         return meshes
 
     def _material(self, shape: Shape, file: ObjFile, group: ObjGroup) -> int:
