@@ -7,7 +7,8 @@ Needs what `make run` leaves: data/ and models/. Drafts are what the layout mode
 guided ones with all constraints. Finished rooms are what the arranger makes of each. Rates are those of all seeds together, with 95 %
 intervals. FID of plan views is measured on training floors, against the split: that of the rooms that stand there is its floor, and no
 other floors than theirs are in the way; that of the same rooms finished is what finishing costs. R_acoll is that of the objects that open, those of the real rooms with the library's models in the
-places of theirs. At the end stand the floors of training rooms, which `part` in manifests/rooms.yaml is taken from.
+places of theirs. Behind them stand the floors of training rooms, which `part` in manifests/rooms.yaml is taken from, and last the bars that
+these figures are held to.
 """
 
 import os
@@ -37,10 +38,11 @@ from pipeline.homes.request import RoomJob
 from pipeline.homes.room_finishing import finish
 from pipeline.homes.rows import object_row
 from pipeline.metrics.articulation import are_obstructed, sweeps_of
+from pipeline.metrics.category import ckl
 from pipeline.metrics.layout_features import features
 from pipeline.metrics.relations import compare, furniture
-from pipeline.metrics.two_samples import forest_accuracy, frechet
-from pipeline.metrics.views import Features, features_once
+from pipeline.metrics.two_samples import forest_accuracy
+from pipeline.metrics.views import Features, compare_views, features_once
 from pipeline.relations.arrangement import Arrangement, make_arrangement, rooms_of
 from pipeline.relations.model import Relations
 from schemas import OPENINGS, ROOMS, SCENES
@@ -115,8 +117,11 @@ def views_apart(
     jobs: Mapping[str, RoomJob],
     examples: Mapping[str, Example],
     features_of: Features,
-) -> dict[str, float]:
-    """Return FID of plan views against the split: of training rooms, as many of each type, also finished, and of what is made on the same floors; jobs and examples by name."""
+) -> dict[str, Any]:
+    """Return FID, KID and SCA of plan views against the split, of training rooms, as many of each type, also finished, and of what is made on the same floors.
+
+    `jobs` and `examples` by name. CKL stands beside them: of the classes against those of the split.
+    """
     real, floors = alike(np.random.default_rng(factory.seed), truth, train, 1)[0]
     own = [jobs[room.name] for room in floors]
     sets = {"train": floors}
@@ -124,7 +129,14 @@ def views_apart(
     for name, made in {**as_real, **furnish_rooms(factory, own, defaultdict(float))}.items():
         rooms = zip(arrangements(own, made), floors, strict=True)
         sets[name] = [replace(room, openings=floor.openings) for room, floor in rooms if room.categories]
-    return {name: frechet(features_of(real), features_of(rooms)) for name, rooms in sets.items()}
+    rng, classes, truly = np.random.default_rng(factory.seed), taxonomy.load().names, classes_of(real)
+    figures = compare_views(rng, factory.seed, features_of, real, sets)
+    return {name: own | {"ckl": ckl(truly, classes_of(sets[name]), classes)["real_to_generated"]} for name, own in figures.items()}
+
+
+def classes_of(rooms: Sequence[Arrangement]) -> list[dict[str, str]]:
+    """Return rows of the objects of rooms, as CKL reads them."""
+    return [{"category": category} for room in rooms for category in room.categories]
 
 
 def jobs_of(split: str) -> dict[str, RoomJob]:
@@ -145,12 +157,55 @@ def print_rates(comparison: Mapping[str, Any], seeds: int = 1) -> None:
         print(f"  {kind:20s} " + "   ".join(f"{v['mean']:6.2f}" for v in of.values()) + f"   n {of['real']['n'] // seeds}")
 
 
-def print_constraints(rates: Mapping[str, Any], views: Mapping[str, Sequence[float]]) -> None:
+def print_views(views: Mapping[str, Sequence[Any]]) -> None:
+    """Print FID, KID, SCA and CKL of all sets, means over the seeds; KID's interval is the widest of all seeds."""
+    print("plan views, on training floors: FID (lowest - highest), of that of train; KID; SCA; CKL, of that of train")
+    train = {key: mean(views["train"], key) for key in ("fid", "ckl")}
+    for name, seeds in views.items():
+        fids, kids = [own["fid"] for own in seeds], [own["kid"] for own in seeds]
+        kid = f"{np.mean([k['mean'] for k in kids]):+.4f} ({min(k['low'] for k in kids):+.4f} to {max(k['high'] for k in kids):+.4f})"
+        fid = f"{np.mean(fids):5.2f} ({min(fids):.2f}-{max(fids):.2f}) {np.mean(fids) / train['fid']:4.2f}"
+        said = mean(seeds, "ckl")
+        print(f"  {name:20s} {fid}  {kid}  {np.mean([own['sca']['rate'] for own in seeds]):.3f}  {said:.4f} {said / train['ckl']:4.2f}")
+
+
+def mean(seeds: Sequence[Any], key: str) -> float:
+    """Return the mean of a figure over seeds."""
+    return float(np.mean([own[key] for own in seeds]))
+
+
+def print_bars(
+    comparison: Mapping[str, Any], accuracies: Mapping[str, Sequence[float]], views: Mapping[str, Sequence[Any]], spent: float
+) -> None:
+    """Print the bars that made rooms are held to, each with its figure; `spent`: CPU seconds of a guided draft."""
+    shares = {k: min(of[k]["rate"] / max(of["real"]["rate"], 1e-9) for of in comparison["rates"].values()) for k in ("finished", "plain")}
+    counts = {kind: abs(of["guided"]["mean"] / of["real"]["mean"] - 1) for kind, of in comparison["objects"].items() if of["real"]["mean"]}
+    off = sorted(kind for kind, by in counts.items() if by > 0.05)
+    fid = {k: mean(views[k], "fid") / mean(views["train"], "fid") for k in ("guided", "finished")}
+    renders = {k: 100 * float(np.mean([own["sca"]["rate"] for own in views[k]])) for k in ("guided", "finished")}
+    bars = [
+        ("least relation rate, finished, of the real", shares["finished"], ">=", 0.92),
+        ("least relation rate, plain drafts, of the real", shares["plain"], ">=", 0.80),
+        ("SCA on layout features, guided drafts", float(np.mean(accuracies["guided"])), "<=", 0.57),
+        ("SCA on layout features, finished", float(np.mean(accuracies["finished"])), "<=", 0.60),
+        *((f"SCA on renders, {k}: distance from 50", abs(v - 50), "<=", 4.0) for k, v in renders.items()),
+        *((f"FID, {k}, of that of train", v, "<=", 1.15) for k, v in fid.items()),
+        ("CKL, guided, of that of train", mean(views["guided"], "ckl") / mean(views["train"], "ckl"), "<=", 1.5),
+        (f"objects a room, all; types further off: {', '.join(off) or 'none'}", counts.get("all", 0.0), "<=", 0.05),
+        ("FID, constraints on against off", mean(views["guided"], "fid") / mean(views["unguided"], "fid") - 1, "<=", 0.03),
+        ("CPU ms of a guided draft", 1000 * spent, "<=", 20.0),
+    ]
+    print("bars")
+    for name, value, sign, bar in bars:
+        print(f"  {'met   ' if (value <= bar) == (sign == '<=') else 'MISSED'} {value:8.3f} {sign} {bar:<6g} {name}")
+
+
+def print_constraints(rates: Mapping[str, Any], views: Mapping[str, Sequence[Any]]) -> None:
     """Print what the constraints cost, on against off: FID of plan views, and the relation rates that fall most."""
     print("constraints on against off")
     for name, off, on in (("drafts", "unguided", "guided"), ("finished", SAMPLERS["unguided"], SAMPLERS["guided"])):
         falls = sorted((of[off]["rate"] - of[on]["rate"], rule) for rule, of in rates.items())[-3:]
-        without, having = np.mean(views[off]), np.mean(views[on])
+        without, having = mean(views[off], "fid"), mean(views[on], "fid")
         said = ", ".join(f"{rule} by {fall:.3f}" for fall, rule in reversed(falls))
         print(f"  {name:10s} FID {having:.2f} against {without:.2f} ({having / without - 1:+.1%}); rates that fall most: {said}")
 
@@ -174,19 +229,19 @@ def main(count: int, seeds: int) -> None:
     jobs, names = [named[name] for name in chosen], [room.name for room in truth]
     sets = {"real": truth * seeds}
     accuracies: dict[str, list[float]] = defaultdict(list)
-    views: dict[str, list[float]] = defaultdict(list)
+    views: dict[str, list[Any]] = defaultdict(list)
     seconds: dict[str, float] = defaultdict(float)
     ways: dict[str, str] = {}
     features_of = features_once(embeddings("")["plan-view net"])
     for seed in range(seeds):
         factory = load_factory(ROOT, tree, seed)
-        for name, fid in views_apart(factory, truth, train, floors, examples, features_of).items():
-            views[name].append(fid)
+        for name, own in views_apart(factory, truth, train, floors, examples, features_of).items():
+            views[name].append(own)
         every = furnish_rooms(factory, jobs, seconds)
         as_real = [draft.placements for draft in drafts_of_real(factory, jobs, [examples[name] for name in chosen])]
         ways = {name: obstructed(factory, jobs, own) for name, own in {"real": as_real, **every}.items()}
-        for name, own in every.items():
-            rooms = arrangements(jobs, own)
+        for name, made in every.items():
+            rooms = arrangements(jobs, made)
             sets.setdefault(name, []).extend(rooms)
             accuracies[name].append(forest_accuracy(seed, features(truth), features(rooms), names, names)["rate"])
     comparison = compare(np.random.default_rng(0), sets, Relations.load(folder / "relations.json"))
@@ -195,12 +250,12 @@ def main(count: int, seeds: int) -> None:
     print("SCA of a random forest on layout features")
     for name, rates in accuracies.items():
         print(f"  {name:20s} {np.mean(rates):.3f} +- {np.std(rates):.3f}")
-    said = ", ".join(f"{k} {np.mean(v):.2f} ({min(v):.2f}-{max(v):.2f})" for k, v in views.items())
-    print(f"FID of plan views, on training floors: {said}")
+    print_views(views)
     print_constraints(comparison["rates"], views)
     print("R_acoll, paper's boxes / real sweeps: " + ", ".join(f"{name} {said}" for name, said in ways.items()))
     print("CPU ms a room: " + ", ".join(f"{k} {1000 * v / len(jobs) / seeds:.1f}" for k, v in seconds.items()))
     print_floors(train)
+    print_bars(comparison, accuracies, views, seconds["guided"] / len(jobs) / seeds)
 
 
 if __name__ == "__main__":

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 from PIL import Image
 
+from pipeline import taxonomy
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.preview.sheet import contact_sheet
 from pipeline.preview.top import top_view
 
-TYPES = ("bedroom", "living_room", "living_dining_room", "dining_room", "kitchen", "bathroom", "kids_room", "study")
 EACH = 5  # rooms of each type and kind
 CELL = 190  # pixels
 Room = tuple[Home, str]  # a home, and the room of it that is shown
@@ -32,7 +32,7 @@ def lineup(
     """Return the two pictures of rooms by type, a row for each type that both have; None where there is none."""
     hidden: list[tuple[str, Image.Image]] = []
     answers: list[tuple[str, Image.Image]] = []
-    for kind in (kind for kind in TYPES if real.get(kind) and generated.get(kind)):
+    for kind in (kind for kind in taxonomy.load().layout_types if real.get(kind) and generated.get(kind)):
         row = [
             (name, top_view(alone(*room), assets, CELL, reaches=False))
             for name, rooms in (("real", real), ("made", generated))
