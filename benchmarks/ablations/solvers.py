@@ -24,25 +24,25 @@ from benchmarks.ablations.drawing import held_out, write_rooms
 from pipeline.diffusion import sampling
 from pipeline.diffusion.checkpoint import load_weights
 from pipeline.diffusion.rooms import read_sets
-from pipeline.diffusion.schedule import FIRST, LAST, Expect, Noise, Shift, alpha_sigma_of, denoise, levels
+from pipeline.diffusion.schedule import FIRST, LAST, Expect, Guide, Noise, alpha_sigma_of, denoise, levels
 
 ROOT = Path(__file__).resolve().parents[2]
 WEIGHTS = ROOT / "weights" / "denoiser.safetensors"
-Solve = Callable[[Expect, Shift, Noise, Sequence[float], float], Tensor]
+Solve = Callable[[Expect, Guide, Noise, Sequence[float], float], Tensor]
 
 
-def first_order(expect: Expect, steer: Shift, noise: Noise, at_levels: Sequence[float], eta: float) -> Tensor:
+def first_order(expect: Expect, guide: Guide, noise: Noise, at_levels: Sequence[float], eta: float) -> Tensor:
     """DDIM (Song et al. 2021) where `eta` is 0, DDPM's ancestral step between levels of any distance where it is 1."""
     x = noise()
     for level, following in pairwise(at_levels):
-        x0 = steer(expect(x, level), level)
+        x0 = guide(expect(x, level), level)
         (alpha, sigma), (alpha_next, sigma_next) = alpha_sigma_of(level), alpha_sigma_of(following)
         fresh = eta * sigma_next * math.sqrt(-math.expm1(level - following))
         x = alpha_next * x0 + math.sqrt(max(sigma_next**2 - fresh**2, 0.0)) * (x - alpha * x0) / sigma + fresh * noise()
-    return steer(expect(x, at_levels[-1]), at_levels[-1])
+    return guide(expect(x, at_levels[-1]), at_levels[-1])
 
 
-def churned(expect: Expect, steer: Shift, noise: Noise, at_levels: Sequence[float], churn: float, heun: bool) -> Tensor:
+def churned(expect: Expect, guide: Guide, noise: Noise, at_levels: Sequence[float], churn: float, heun: bool) -> Tensor:
     """Euler's or Heun's steps of Karras et al. 2022, before each of which the noise grows by the share `churn`."""
     x = noise()
     for level, following in pairwise(at_levels):
@@ -50,14 +50,14 @@ def churned(expect: Expect, steer: Shift, noise: Noise, at_levels: Sequence[floa
         (alpha, sigma), (alpha_more, sigma_more) = alpha_sigma_of(level), alpha_sigma_of(noisier)
         added = math.sqrt(max((sigma_more / alpha_more) ** 2 - (sigma / alpha) ** 2, 0.0))
         x = alpha_more * (x / alpha + added * noise())
-        x0 = steer(expect(x, noisier), noisier)
+        x0 = guide(expect(x, noisier), noisier)
         alpha_next, sigma_next = alpha_sigma_of(following)
         ahead = alpha_next * x0 + sigma_next / sigma_more * (x - alpha_more * x0)
         if heun:
-            x0 = (x0 + steer(expect(ahead, following), following)) / 2
+            x0 = (x0 + guide(expect(ahead, following), following)) / 2
             ahead = alpha_next * x0 + sigma_next / sigma_more * (x - alpha_more * x0)
         x = ahead
-    return steer(expect(x, at_levels[-1]), at_levels[-1])
+    return guide(expect(x, at_levels[-1]), at_levels[-1])
 
 
 def middle_levels(count: int) -> tuple[float, ...]:
@@ -79,7 +79,7 @@ class Solver:
 
 def at_eta(solve: Solve, eta: float) -> Solve:
     """Return a solver at an eta of its own."""
-    return lambda expect, steer, noise, at, _: solve(expect, steer, noise, at, eta)
+    return lambda expect, guide, noise, at, _: solve(expect, guide, noise, at, eta)
 
 
 def solvers() -> dict[str, Solver]:

@@ -6,14 +6,14 @@ from pipeline.arrange.postoptimisation import control_walkable, free_ratio, post
 from pipeline.arrange.separate import separate
 from pipeline.arrange.settings import PostoptSettings, ThingsSettings, WalkableSettings
 from pipeline.arrange.site import Site
-from pipeline.arrange.surface_placement import Laying
+from pipeline.arrange.surface_placement import SurfacePlacement
 
 __all__ = [
     "Hanging",
-    "Laying",
     "LearntRelations",
     "PostoptSettings",
     "Site",
+    "SurfacePlacement",
     "ThingsSettings",
     "WalkableSettings",
     "control_walkable",

@@ -67,7 +67,7 @@ class Groups:
         return bool((hits >= 0).any())
 
 
-class Laying:
+class SurfacePlacement:
     """A room whose furniture stands. Things are added one by one; nothing is taken away."""
 
     def __init__(

@@ -21,7 +21,7 @@ from pipeline.diffusion.settings import SampleSettings
 
 
 @dataclass(frozen=True, slots=True)
-class Guide:
+class Guidance:
     """What guides a batch: the rooms, their classes (B, N), the library, the classes that open (C + 1,)."""
 
     rooms: RoomBatch
@@ -30,7 +30,7 @@ class Guide:
     opens: Tensor
     settings: SampleSettings
 
-    def steer(self, codec: Codec, x0: Tensor, level: float) -> Tensor:
+    def step(self, codec: Codec, x0: Tensor, level: float) -> Tensor:
         """Return the expected clean channels x0 (B, N, 40) at a level (lambda) as they are wanted."""
         s = self.settings
         snaps = self.library is not None and s.snap_below > 0 and level > lambda_of(s.snap_below)

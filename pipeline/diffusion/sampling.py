@@ -18,7 +18,7 @@ from pipeline.diffusion.checkpoint import Header, load_weights
 from pipeline.diffusion.codec import CHANNELS
 from pipeline.diffusion.context import Library, Proposal, RoomContext
 from pipeline.diffusion.floor import Floor, floor_tokens
-from pipeline.diffusion.guidance import Guide
+from pipeline.diffusion.guidance import Guidance
 from pipeline.diffusion.inventory import DRAWS, Ask, Inventory, draw_inventories, room_features
 from pipeline.diffusion.schedule import denoise, levels, paper_levels
 from pipeline.diffusion.set_transformer import FEW, SetTransformer
@@ -120,7 +120,7 @@ class Sampler:
         device = classes.device
         rooms = rooms.to(device)
         code, ones = self.net.floor_code(rooms, classes), torch.ones(len(keys), device=device)
-        guide = Guide(rooms, classes, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
+        guidance = Guidance(rooms, classes, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
 
         before: Tensor | None = None
 
@@ -130,8 +130,8 @@ class Sampler:
                 before = self.net.expected(x, classes, level * ones, rooms, code, before)
             return before
 
-        def steer(x0: Tensor, level: float) -> Tensor:
-            return guide.steer(self.net.codec, x0, level)
+        def guide(x0: Tensor, level: float) -> Tensor:
+            return guidance.step(self.net.codec, x0, level)
 
         rngs = [seeds.generator(self.seed, "diffusion", *key) for key in keys]
 
@@ -140,7 +140,7 @@ class Sampler:
             return torch.from_numpy(np.stack([rng.standard_normal(shape, np.float32) for rng in rngs])).to(device)
 
         count = self.settings.evaluations
-        return denoise(expect, steer, noise, levels(count) if count else paper_levels(), self.settings.eta)
+        return denoise(expect, guide, noise, levels(count) if count else paper_levels(), self.settings.eta)
 
     def _layouts(self, rooms: Sequence[RoomContext]) -> list[int]:
         """Return the indices of the rooms' types."""

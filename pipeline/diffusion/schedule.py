@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 Expect = Callable[[Tensor, float], Tensor]  # x (B, N, 40), lambda -> expected x0
-Shift = Callable[[Tensor, float], Tensor]  # expected x0, lambda -> x0 as it is wanted
+Guide = Callable[[Tensor, float], Tensor]  # expected x0, lambda -> x0 as it is wanted
 Noise = Callable[[], Tensor]  # -> standard normal (B, N, 40), drawn anew
 
 TIMESTEPS = 1000
@@ -48,7 +48,7 @@ def alpha_sigma(level: Tensor) -> tuple[Tensor, Tensor]:
     return torch.sigmoid(level).sqrt(), torch.sigmoid(-level).sqrt()
 
 
-def denoise(expect: Expect, steer: Shift, noise: Noise, at_levels: Sequence[float], eta: float = 1.0) -> Tensor:
+def denoise(expect: Expect, guide: Guide, noise: Noise, at_levels: Sequence[float], eta: float = 1.0) -> Tensor:
     """Go from noise up through rising `at_levels` (lambda); return the clean channels expected at the last of them.
 
     From level s to level t > s, x_t ~ q(x_t | x_s, x0) of the forward process, with `eta` times its deviation (Song et al.
@@ -58,14 +58,14 @@ def denoise(expect: Expect, steer: Shift, noise: Noise, at_levels: Sequence[floa
     """
     x, before, step_before = noise(), None, 1.0
     for level, following in pairwise(at_levels):
-        x0, step = steer(expect(x, level), level), following - level
+        x0, step = guide(expect(x, level), level), following - level
         ahead = x0 if before is None else x0 + step / (2 * step_before) * (x0 - before)
         (alpha, sigma), (alpha_next, sigma_next) = alpha_sigma_of(level), alpha_sigma_of(following)
         fresh = eta * sigma_next * math.sqrt(-math.expm1(-step))  # deviation of q, as 1 - SNR_s / SNR_t
         kept = math.sqrt(max(sigma_next**2 - fresh**2, 0.0))
         x = alpha_next * ahead + kept * (x - alpha * ahead) / sigma + fresh * noise()
         before, step_before = x0, step
-    return steer(expect(x, at_levels[-1]), at_levels[-1])
+    return guide(expect(x, at_levels[-1]), at_levels[-1])
 
 
 def alpha_sigma_of(level: float) -> tuple[float, float]:

@@ -91,7 +91,7 @@ class Pass(nn.Module):
         return biases
 
     def forward(
-        self, tokens: Tensor, slots: Seen, guess: Tensor, rooms: RoomBatch, keys: tuple[Tensor, ...], condition: Tensor
+        self, tokens: Tensor, slots: NoisySlots, guess: Tensor, rooms: RoomBatch, keys: tuple[Tensor, ...], condition: Tensor
     ) -> tuple[Tensor, Tensor]:
         """Return the tokens, and the answer (B, N, 40) as directions and amounts; `guess` (B, N, 8) metric."""
         boxes, blur = boxes_of(guess), slots.blur
@@ -123,7 +123,7 @@ class Pass(nn.Module):
         return tokens, torch.cat([goes[:, :, 0], plain[..., :4], goes[:, :, 1], plain[..., 4:]], -1)
 
 
-class Seen(NamedTuple):
+class NoisySlots(NamedTuple):
     """What all passes share: `ways` (three of (B, N, 2)) of the noisy slots, `blur` (B, 2) of a position [m] and of an axis, `padding` (B, N)."""
 
     ways: tuple[Tensor, ...]
@@ -188,7 +188,9 @@ class SetTransformer(nn.Module):
         alpha, sigma = torch.sigmoid(level).sqrt()[:, None, None], torch.sigmoid(-level).sqrt()[:, None, None]
         spread = sigma[:, 0, 0].clamp_min(3e-3)
         front = torch.stack([x[..., 7], -x[..., 6]], -1)
-        slots = Seen((x[..., :2], x[..., YAW], front), torch.stack([spread * self.codec.reach, spread], -1), classes >= self.codec.classes)
+        slots = NoisySlots(
+            (x[..., :2], x[..., YAW], front), torch.stack([spread * self.codec.reach, spread], -1), classes >= self.codec.classes
+        )
         tokens = self.slot(torch.cat([invariants(x[..., :2], x[..., YAW]), x[..., 2:6], x[..., YAW.stop :]], -1)) + self.kind(classes)
         guess, answer, answers = (alpha * x if before is None else before)[..., Geometry], None, []
         per_pass = 2 * self.settings.layers + 1

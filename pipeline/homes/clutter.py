@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import taxonomy
-from pipeline.arrange import Hanging, Laying, ThingsSettings
+from pipeline.arrange import Hanging, SurfacePlacement, ThingsSettings
 from pipeline.arrange.walls import EdgeOpening
 from pipeline.card import Hangs, cards
 from pipeline.entities.home import Home, Placement
@@ -66,19 +66,19 @@ class _Dressing:
         if not self.furniture:
             return []
         known = self.layouts[0]
-        laying = Laying(self.room.polygon, self.furniture, self.library, self.settings, self.touch)
+        surfaces = SurfacePlacement(self.room.polygon, self.furniture, self.library, self.settings, self.touch)
         for rug in (layout.rug for layout in self.layouts):
             if rug and self.rng.random() < rug.share * self.settings.rate:
                 self._rug(rug)
         if known.windows or known.walls:
-            hanging = self._hanging(laying)
+            hanging = self._hanging(surfaces)
             self._windows(hanging, known.windows)
             for category, expected in known.walls.items():
                 if custom := cards()[category].hangs:
                     self._walls(hanging, category, expected, custom)
-            laying.fix([p for p in self.found if p.position[2] > self.floor])
+            surfaces.fix([p for p in self.found if p.position[2] > self.floor])
         for number, support in enumerate(self.furniture):
-            self._load(laying, number, support)
+            self._load(surfaces, number, support)
         return self.found
 
     def _add(self, category: str, asset_id: str, position: Floats, yaw: float, scale: Floats | None = None, support: str = "") -> None:
@@ -144,13 +144,13 @@ class _Dressing:
 
     # -- walls -------------------------------------------------------------------------------------------------------
 
-    def _hanging(self, laying: Laying) -> Hanging:
+    def _hanging(self, surfaces: SurfacePlacement) -> Hanging:
         """Return the room's walls with all that stands before them and all that moves there."""
         own = [o for o in self.home.plan.openings if self.room.room_id in o.rooms and o.level == self.room.level]
         ids = {o.opening_id for o in own}
         swung = join_prisms([leaf_sweep(leaf, self.floor).prisms for leaf in leaves(self.home.plan) if leaf.opening_id in ids])
-        boxes = laying.sweeps.boxes[np.isfinite(laying.sweeps.boxes).all(1)]
-        rest = laying.rest.prisms
+        boxes = surfaces.sweeps.boxes[np.isfinite(surfaces.sweeps.boxes).all(1)]
+        rest = surfaces.rest.prisms
         corners = np.concatenate([rest.corners, swung.corners, boxes[:, [0, 1, 3, 1, 3, 4, *[0, 4] * 9]].reshape(-1, 12, 2)])
         heights = np.concatenate([rest.z, swung.z, boxes[:, [2, 5]]]) - self.floor
         return Hanging(self.room.polygon, own, corners, heights, self.room.height)
@@ -199,14 +199,14 @@ class _Dressing:
 
     # -- furniture ---------------------------------------------------------------------------------------------------
 
-    def _load(self, laying: Laying, number: int, support: Placement) -> None:
+    def _load(self, surfaces: SurfacePlacement, number: int, support: Placement) -> None:
         for category, expected in cards()[support.category].holds.items():
             for _ in range(self._draw_count(expected)):
                 asset_id = self._pick_asset(category, self.library.rows[support.asset_id]["style"])
                 if not asset_id:
                     break
                 facing, centred, backed = (way in cards()[category].lies for way in ("facing", "centred", "backed"))
-                place = laying.lay(self.rng, self.library[asset_id], number, facing=facing, centred=centred, backed=backed)
+                place = surfaces.lay(self.rng, self.library[asset_id], number, facing=facing, centred=centred, backed=backed)
                 if place is not None:
                     self._add(category, asset_id, *place, support=support.object_id)
 

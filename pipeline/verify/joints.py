@@ -19,9 +19,9 @@ from pipeline.geometry.robot import Robot
 from pipeline.geometry.stance import stand_pose
 from pipeline.geometry.walls import Leaf, leaves
 from pipeline.verify.bodies import Bodies
-from pipeline.verify.carrying import Carrier, riders, way
 from pipeline.verify.certificate import JointCheck
 from pipeline.verify.settings import VerifySettings
+from pipeline.verify.supports import Support, covered, moved_by
 
 Floats = NDArray[np.float64]
 Walks = Mapping[int, tuple[FreeSpace, int]]
@@ -30,7 +30,7 @@ WALL, DOOR = "wall", "door"  # blocker's name where a part meets a wall, or a cl
 
 
 def check_joints(
-    home: Home, assets: Mapping[str, Asset], bodies: Bodies, carriers: Mapping[int, Carrier], walks: Walks, settings: VerifySettings
+    home: Home, assets: Mapping[str, Asset], bodies: Bodies, supports: Mapping[int, Support], walks: Walks, settings: VerifySettings
 ) -> list[JointCheck]:
     """Check every joint of every placed object, in order. What lies in a drawer comes out with it."""
     checks = []
@@ -47,7 +47,7 @@ def check_joints(
         moved = [sweep.prisms.placed(placement.position, placement.yaw, placement.scale) for sweep in bodies.solids[g].sweeps]
         own = []
         for index, joint in enumerate(asset.joints):
-            hits = _way(bodies, g, index, asset, moved[index], turn, carriers, settings)
+            hits = _sweep_hits(bodies, g, index, asset, moved[index], turn, supports, settings)
             hits[(hits < 0) & (wall_excesses(moved[index].corners, moved[index].count, room) > settings.wall)] = -2
             hits[(hits == -1) & (_hits(moved[index], -1, shut, settings.touch) >= 0)] = -3
             clear_upper, clear, blocker = _progress(bodies.solids[g].sweeps[index], moved[index], hits, home)
@@ -85,18 +85,18 @@ def _in_turn(checks: list[JointCheck]) -> list[JointCheck]:
     return [replace(c, clear=False, clear_upper=0.0, blocker=blockers[c.joint_id]) if blockers[c.joint_id] else c for c in checks]
 
 
-def _way(
+def _sweep_hits(
     bodies: Bodies,
     owner: int,
     index: int,
     asset: Asset,
     moved: Prisms,
     turn: Floats,
-    carriers: Mapping[int, Carrier],
+    supports: Mapping[int, Support],
     settings: VerifySettings,
 ) -> NDArray[np.int64]:
     """Return per prism of a joint's sweep the object that it meets, -1 for none; what rides along must come through as well."""
-    along = riders(asset, index, owner, carriers)
+    along = moved_by(asset, index, owner, supports)
     if not along:
         return _hits(moved, owner, bodies, settings.touch)
     boxes = bodies.boxes.copy()
@@ -113,7 +113,7 @@ def _way(
     downward = np.concatenate([[0.0], reached[reached < 0]])
     for ends, first in ((upward, 0), (downward, len(upward) - 1)):
         for stretch in (ends[[0, -1]], ends):  # the whole way at once; step by step only if something is in it
-            things = way(bodies, along, asset.joints[index], turn, stretch.tolist())
+            things = covered(bodies, along, asset.joints[index], turn, stretch.tolist())
             met = _hits(things, owner, free, settings.touch)
             met[(met < 0) & (_hits(things, -1, frame, settings.touch) >= 0)] = along[0]
             if (met < 0).all():

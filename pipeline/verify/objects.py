@@ -9,12 +9,12 @@ from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
 from pipeline.geometry.contact import pair_depths, wall_excesses
 from pipeline.verify.bodies import Bodies
-from pipeline.verify.carrying import Carrier
 from pipeline.verify.certificate import ObjectCheck
 from pipeline.verify.settings import VerifySettings
+from pipeline.verify.supports import Support
 
 
-def check_objects(home: Home, bodies: Bodies, carriers: Mapping[int, Carrier], settings: VerifySettings) -> tuple[ObjectCheck, ...]:
+def check_objects(home: Home, bodies: Bodies, supports: Mapping[int, Support], settings: VerifySettings) -> tuple[ObjectCheck, ...]:
     """Check every object against all others, the walls of its room, and gravity."""
     p = bodies.prisms
     depths = pair_depths(p.corners, p.count, p.z, bodies.flat, bodies.start, bodies.boxes, settings.touch)
@@ -30,7 +30,7 @@ def check_objects(home: Home, bodies: Bodies, carriers: Mapping[int, Carrier], s
                 hits,
                 round(float(outside[g]), 6),
                 bool(outside[g] <= settings.wall),
-                g in carriers if placement.support else _is_supported(g, placement, home, bodies, settings),
+                g in supports if placement.support else _is_supported(g, placement, home, bodies, settings),
             )
         )
     return tuple(checks)

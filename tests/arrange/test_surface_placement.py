@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.arrange import Laying, ThingsSettings
+from pipeline.arrange import SurfacePlacement, ThingsSettings
 from pipeline.arrange.surfaces import surfaces
 from pipeline.entities.home import Placement
 from pipeline.verify import verify_home
@@ -42,7 +42,7 @@ def test_a_hull_over_what_is_open_is_no_surface():
 
 def laid(furniture, seed, settings=EVERYWHERE, names=THINGS):
     rng = np.random.default_rng(seed)
-    room = Laying(SQUARE, furniture, LIBRARY, settings, 0.002)
+    room = SurfacePlacement(SQUARE, furniture, LIBRARY, settings, 0.002)
     found = []
     for index, support in enumerate(furniture):
         for number, name in enumerate(names):
@@ -110,7 +110,7 @@ def in_drawer(thing):
     """Whether a thing is ever laid in the drawer of a chest."""
     rng = np.random.default_rng(0)
     furniture = [placed("tray_chest", 2.0, 2.6)]
-    room = Laying(SQUARE, furniture, {**LIBRARY, thing.asset_id: thing}, ThingsSettings(hidden=50.0, tries=12), 0.0005)
+    room = SurfacePlacement(SQUARE, furniture, {**LIBRARY, thing.asset_id: thing}, ThingsSettings(hidden=50.0, tries=12), 0.0005)
     places = [room.lay(rng, thing, 0, facing=False) for _ in range(12)]
     return any(place is not None and abs(place[0][2] - 0.14) < 0.01 for place in places)
 

@@ -87,7 +87,7 @@ def test_with_noise_it_forgets_where_it_began():
     assert abs(float(np.corrcoef(x, noise()().flatten())[0, 1])) < 0.1
 
 
-def test_what_is_steered_moves_the_sample_its_way():
+def test_guidance_moves_the_sample_its_way():
     plain = denoise(exact, still, noise(), levels(30))
     pushed = denoise(exact, lambda x0, level: x0 + 0.05 * (level > 6), noise(), levels(30))
     assert float((pushed - plain).min()) > 0.04

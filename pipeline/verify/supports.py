@@ -17,21 +17,21 @@ LEVEL = 0.1  # a slide whose axis rises less than this per metre keeps what lies
 
 
 @dataclass(frozen=True, slots=True)
-class Carrier:
+class Support:
     """The placement (index) that a thing stands on, and the link of its asset that bears it."""
 
     placement: int
     link: int
 
 
-def find_carriers(placements: Sequence[Placement], bodies: Bodies, gap: float) -> dict[int, Carrier]:
+def find_supports(placements: Sequence[Placement], bodies: Bodies, gap: float) -> dict[int, Support]:
     """Return what bears each placement that names a `support`, by index; what nothing there bears is missing.
 
     Its middle must lie over a piece of the support whose top is within `gap` [m] of its bottom.
     """
     index = {p.object_id: g for g, p in enumerate(placements)}
     p = bodies.prisms
-    carriers = {}
+    supports = {}
     for g, placement in enumerate(placements):
         h = index.get(placement.support) if placement.support else None
         if h is None or h == g:
@@ -42,21 +42,21 @@ def find_carriers(placements: Sequence[Placement], bodies: Bodies, gap: float) -
         # The nearest top bears it: a drawer's floor, not the board of the carcass just below.
         for i in own[np.argsort(off, kind="stable")][: int((off <= gap).sum())]:
             if contains(x, y, np.ascontiguousarray(p.polygon(int(i)))):
-                carriers[g] = Carrier(h, int(p.part[i]))
+                supports[g] = Support(h, int(p.part[i]))
                 break
-    return carriers
+    return supports
 
 
-def riders(asset: Asset, index: int, owner: int, carriers: Mapping[int, Carrier]) -> list[int]:
+def moved_by(asset: Asset, index: int, owner: int, supports: Mapping[int, Support]) -> list[int]:
     """Return the placements that ride along when joint `index` of placement `owner` moves: they lie in a drawer."""
     joint = asset.joints[index]
     if joint.type != "prismatic" or abs(float(joint.axis[2])) > LEVEL:
         return []
     moved = moved_links(asset, index)
-    return [g for g, carrier in carriers.items() if carrier.placement == owner and carrier.link in moved]
+    return [g for g, support in supports.items() if support.placement == owner and support.link in moved]
 
 
-def way(bodies: Bodies, things: Sequence[int], joint: Joint, turn: NDArray[np.float64], ends: Sequence[float]) -> Prisms:
+def covered(bodies: Bodies, things: Sequence[int], joint: Joint, turn: NDArray[np.float64], ends: Sequence[float]) -> Prisms:
     """Return what riding things cover between each position of a slide and the next; `part` numbers the stretches.
 
     `turn` (3, 3) is the owner's rotation, `ends` (S + 1,) the positions.
