@@ -14,13 +14,13 @@ from pipeline.floorplan.imports import describe_repairs, program_of, read_own
 from pipeline.floorplan.program.description import assumptions, notes
 from pipeline.floorplan.prompt import understood
 from pipeline.floorplan.wishes import with_wishes
+from pipeline.homes.empty_plan import require_sound
 from pipeline.homes.factory import open_factory
 from pipeline.homes.furniture_report import deliveries, report
 from pipeline.homes.jit_warmup import warm_up
 from pipeline.homes.outcomes import Empty
 from pipeline.homes.reproduction import header_of
 from pipeline.homes.request import Request
-from pipeline.homes.soundness import require_sound
 from pipeline.manifest import digest
 from pipeline.shards import add_part, commit_shard, gather, open_or_create, require_prompt
 

@@ -14,7 +14,7 @@ from pipeline.floorplan.draw.characters import terminal
 from pipeline.floorplan.draw.drawing import png, svg
 from pipeline.floorplan.imports import describe_repairs, program_of, read_own
 from pipeline.floorplan.program.description import assumptions, notes
-from pipeline.homes.soundness import require_sound
+from pipeline.homes.empty_plan import require_sound
 from pipeline.manifest import write_bytes, write_json
 
 STDOUT = "-"

@@ -8,9 +8,9 @@ from pathlib import Path
 from pipeline import floorplan, params
 from pipeline.execution import Progress
 from pipeline.geometry.compiled import cache_folder, is_cold
+from pipeline.homes.empty_plan import judge_empty
 from pipeline.homes.factory import Factory
 from pipeline.homes.request import Request
-from pipeline.homes.soundness import judge_empty
 from pipeline.verify import VerifySettings
 
 WHOLE = "whole-home"  # a file of the cache: what it takes to make a whole home has been compiled

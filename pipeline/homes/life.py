@@ -20,6 +20,7 @@ from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError, SfgenError
 from pipeline.execution import tell
 from pipeline.homes.clutter import small_things
+from pipeline.homes.empty_plan import closed_rooms
 from pipeline.homes.furnish import Draft, draft_rooms
 from pipeline.homes.outcomes import Empty, Outcome, files_of
 from pipeline.homes.planning import PlannedHome, plan_home
@@ -27,7 +28,6 @@ from pipeline.homes.request import Request, RoomJob
 from pipeline.homes.resources import Resources
 from pipeline.homes.room_finishing import RoomResult, finish
 from pipeline.homes.rows import BEST, Row, home_rows, reject_row
-from pipeline.homes.soundness import closed_rooms
 from pipeline.homes.violations import Violation, violations
 from pipeline.shards import scene_id
 from pipeline.verify import Certificate, verify_home

@@ -12,10 +12,10 @@ from pipeline.errors import RefusedError
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.program.floor_program import Furniture
 from pipeline.floorplan.program.furniture import least_pieces, matching_categories, plain
+from pipeline.homes.empty_plan import judge_empty
 from pipeline.homes.furnish import Draft
 from pipeline.homes.request import Request, RoomJob, layout_type
 from pipeline.homes.resources import Resources
-from pipeline.homes.soundness import judge_empty
 
 
 @dataclass(frozen=True, slots=True)

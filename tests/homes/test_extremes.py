@@ -13,9 +13,9 @@ from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan import plan_json
 from pipeline.floorplan.imports import program_of, read_own_json
 from pipeline.floorplan.program.floor_program import Furniture, Things
+from pipeline.homes.empty_plan import check_sound
 from pipeline.homes.furniture_report import deliveries, report
 from pipeline.homes.request import Request
-from pipeline.homes.soundness import check_sound
 from pipeline.verify import verify_home
 from tests.judging import SETTINGS
 

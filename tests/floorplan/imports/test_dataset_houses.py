@@ -6,8 +6,8 @@ from pipeline import taxonomy
 from pipeline.floorplan import plan_json
 from pipeline.floorplan.document import PlanDocument
 from pipeline.floorplan.imports import describe_repairs, program_of, read_own_json
+from pipeline.homes.empty_plan import UnsoundError, check_sound, closed_rooms
 from pipeline.homes.request import layout_type
-from pipeline.homes.soundness import UnsoundError, check_sound, closed_rooms
 from tests.floorplan.imports import procthor_houses
 from tests.judging import SETTINGS
 from tests.sources import front_houses

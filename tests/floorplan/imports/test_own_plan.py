@@ -14,7 +14,7 @@ from pipeline.errors import ContentError, RefusedError, SfgenError, UsageError
 from pipeline.floorplan import parse, plan_json, solve
 from pipeline.floorplan.document import PlanDocument, document_schema, refusal_json
 from pipeline.floorplan.imports import program_of, read_own, read_own_json
-from pipeline.homes.soundness import check_sound
+from pipeline.homes.empty_plan import check_sound
 from tests.judging import SETTINGS
 
 
