@@ -15,11 +15,14 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 from rooms import ROOT, print_rates
 
+from pipeline.experiments.dataset import dataset_coherence
 from pipeline.experiments.realism import alike, embeddings, furnished, layout_figures, shipped_rooms
 from pipeline.metrics.relations import compare
 from pipeline.metrics.views import compare_views, features_once
 from pipeline.relations.arrangement import rooms_of
 from pipeline.relations.model import Relations
+from pipeline.tables import read
+from schemas import OBJECTS, SCENES
 
 
 def main(dataset: Path, draws: int) -> None:
@@ -47,6 +50,15 @@ def main(dataset: Path, draws: int) -> None:
     print("share of cases in which it holds, and of the real share: real, train, shipped")
     sets = {"real": real, "train": train, "shipped": shipped}
     print_rates(compare(np.random.default_rng(0), sets, Relations.load(tables / "relations.json")))
+    print("whether things go together, and how many a home has: real, shipped")
+    held_out = [row for row in read(tables / "objects.parquet", OBJECTS) if row["scene_id"] in homes_of_split(tables)]
+    for name, of in dataset_coherence(ROOT, np.random.default_rng(0), held_out, dataset).items():
+        print(f"  {name:30s} " + "   ".join(f"{v['mean']:7.3f} ({v['low']:.2f}-{v['high']:.2f}) of {v['n']}" for v in of.values()))
+
+
+def homes_of_split(folder: Path) -> set[str]:
+    """Return the scene_ids of the test split."""
+    return {row["scene_id"] for row in read(folder / "scenes.parquet", SCENES) if row["split"] == "test"}
 
 
 if __name__ == "__main__":

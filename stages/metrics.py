@@ -10,7 +10,7 @@ from pipeline import params, seeds, tables, taxonomy
 from pipeline.entry import run
 from pipeline.execution import cores, map_jobs, track
 from pipeline.experiments import paper_tables
-from pipeline.experiments.dataset import dataset_figures
+from pipeline.experiments.dataset import dataset_coherence, dataset_figures
 from pipeline.experiments.document import write_report
 from pipeline.experiments.prompt_file import read_prompts
 from pipeline.experiments.prompts import evaluate_prompts
@@ -52,6 +52,7 @@ def main(root: Path) -> None:
         "walkable": paper_tables.walkable_table(trials, settings.taus, rooms),
         "articulation": paper_tables.articulation_table(rng, trials, sweeps_of(factory.library.joints), factory.library),
         "ablation": paper_tables.ablation_table(rng, trials, settings.taus),
+        "coherence": dataset_coherence(root, rng, held_out),
         "category": paper_tables.category_table(trials, real, held_out, taxonomy.load().names),
         "realism": realism(root, seed, settings, trials),
         "plan": plan,

@@ -1,5 +1,6 @@
 """Figures of the dataset that ships, and counts of what was left out on the way."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +9,9 @@ import numpy as np
 from pipeline import tables
 from pipeline.homes import rows as homes
 from pipeline.homes.rows import Row
+from pipeline.metrics.coherence import coherence, tastes
 from pipeline.sources import reasons as sources
-from schemas import REJECTS, ROOMS, SCENES
+from schemas import ASSETS, LATENTS, OBJECTS, REJECTS, ROOMS, SCENES
 from schemas.table import Table
 
 
@@ -35,6 +37,15 @@ def dataset_figures(folder: Path) -> dict[str, Any]:
         "room_tries_per_home": _mean(scenes, "attempts"),
         "megabytes": round(sum(p.stat().st_size for p in folder.rglob("*") if p.is_file()) / 1e6, 1),
     }
+
+
+def dataset_coherence(root: Path, rng: np.random.Generator, real: Sequence[Row], dataset: Path | None = None) -> dict[str, Any]:
+    """Return by figure whether things go together in real homes, given the rows of their objects, and in those of a dataset (data/shards)."""
+    places = ((ASSETS, root / "data/tables/assets.parquet"), (LATENTS, root / "data/latents/latents.parquet"))
+    assets, latents = (tables.read(path, table) for table, path in places)
+    shipped = shipped_rows(dataset or root / "data" / "shards", OBJECTS)
+    real_figures, made = (coherence(rng, rows, *tastes(assets, latents)) for rows in (real, shipped))
+    return {name: {"real": value, "shipped": made[name]} for name, value in real_figures.items() if name in made}
 
 
 def reject_rows(root: Path) -> list[list[str]]:

@@ -54,7 +54,7 @@ def write_report(root: Path, figures: Mapping[str, Any], factory: Factory, setti
         sections.walkable_section(figures["walkable"], rates["walkable"]),
         sections.category_section(figures["category"]),
         baselines.baselines_section(_json(root / "metrics" / "baselines.json")),
-        realism_section(figures["realism"], lineups(root, folder, homes, factory, settings)),
+        realism_section(figures["realism"], figures["coherence"], lineups(root, folder, homes, factory, settings)),
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
         _calibration(folder, _json(root / "metrics" / "calibration.json")),
         sections.reject_section(reject_rows(root)),

@@ -19,8 +19,8 @@ TITLES = {
 VOID = "Void, for harm that is not seen:"
 
 
-def realism_section(table: Json, pictures: Sequence[Picture]) -> Section:
-    """Return relation rates, counts, classifiers, image metrics and novelty."""
+def realism_section(table: Json, coherence: Json, pictures: Sequence[Picture]) -> Section:
+    """Return relation rates, counts, what goes together, classifiers, image metrics and novelty."""
     relations = table["relations"]
     text = [
         "Real: furnished rooms of the test split. Drafts: what the layout model draws on the same floors. Finished: those as they would ship. Shipped: the rooms of the homes above, on floors of their own.",
@@ -32,6 +32,10 @@ def realism_section(table: Json, pictures: Sequence[Picture]) -> Section:
         _rates("Share of cases in which it holds", relations["rates"]),
         _rates("The strongest learnt relations: share of cases that stand in one of their modes", relations["learnt"]),
         _rates("Objects in a room; chairs in rooms with a dining table", {**relations["objects"], "chairs": relations["chairs"]}),
+        _rates(
+            "Whether things go together (a home's things in its commonest style, sets of one model, finishes that look alike), and how many a home has",
+            coherence,
+        ),
         _forest(table["layout"]),
         *views,
         _novelty(table["novelty"]),

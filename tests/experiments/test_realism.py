@@ -28,6 +28,9 @@ from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 from tests.relations.making import bedrooms
 
 
+TASTE = {"style": {key: {"mean": 0.8, "low": 0.7, "high": 0.9, "n": 5} for key in ("real", "shipped")}}
+
+
 def home_of(room, scene_id):
     plan = Plan((Room("bed", "bedroom", room.polygon),), (), "bed")
     things = [
@@ -135,17 +138,17 @@ def test_a_handful_of_rooms_gives_figures_that_can_be_written(rooms, train):
     few = Beside(rooms.real[:2], rooms.train[:train], {"guided": rooms.real[:2], "shipped": []})
     found = realism_table(0, few, learning.fit([]), embeddings(""))
     assert json.loads(canonical(found)) == found
-    assert "drafts, guided" in render("t", "l", [realism_section(found, [])])
+    assert "drafts, guided" in render("t", "l", [realism_section(found, TASTE, [])])
 
 
 def test_the_chapter_shows_it_and_calls_a_blind_figure_void(table):
-    page = render("t", "l", [realism_section(table, [])])
+    page = render("t", "l", [realism_section(table, TASTE, [])])
     assert "drafts, guided" in page
     assert "nightstand at the bed" in page
     for turned, shown in ((["turned"], 2), ([], 0)):
         layout = {**table["layout"], "blind_to": {"SCA": turned}}
         views = {name: {**found, "blind_to": {"FID": [], "KID": turned, "SCA": []}} for name, found in table["views"].items()}
-        page = render("t", "l", [realism_section({**table, "layout": layout, "views": views}, [])])
+        page = render("t", "l", [realism_section({**table, "layout": layout, "views": views}, TASTE, [])])
         assert page.count(VOID) == shown
         assert page.count("KID (turned)") == page.count("SCA (turned)") == shown / 2
 
