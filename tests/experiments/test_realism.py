@@ -27,7 +27,6 @@ from pipeline.report.realism import VOID, realism_section
 from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 from tests.relations.making import bedrooms
 
-
 TASTE = {"style": {key: {"mean": 0.8, "low": 0.7, "high": 0.9, "n": 5} for key in ("real", "shipped")}}
 
 
