@@ -12,7 +12,7 @@ from scipy.special import ndtri
 
 from pipeline import seeds, style, taxonomy
 from pipeline.card import Corpus, Form, Size, cards
-from pipeline.corpus.furniture.finishes import MANNERS, SUPER_CATEGORIES
+from pipeline.corpus.furniture.finishes import STYLES, SUPER_CATEGORIES
 
 TAIL = float(ndtri(0.95))
 MOST_SKEWED = 1.2
@@ -106,7 +106,7 @@ def lines() -> Mapping[str, Corpus]:
 
 def styles_of(form: Form) -> tuple[str, ...]:
     """Return the styles that a form comes in; words for several are spelt out."""
-    return tuple(s for word in form.styles for s in style.load().groups.get(word, (word,))) or tuple(MANNERS)
+    return tuple(s for word in form.styles for s in style.load().groups.get(word, (word,))) or tuple(STYLES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,7 +198,7 @@ def _raise(forms: Sequence[Form], boxes: NDArray[np.float64]) -> None:
 def _style(rng: np.random.Generator, form: Form) -> str:
     """Draw a style by its share, among those that suit the form."""
     names = styles_of(form)
-    shares = np.array([MANNERS[name].share for name in names])
+    shares = np.array([STYLES[name].share for name in names])
     return str(rng.choice(names, p=shares / shares.sum()))
 
 

@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import Finish, Material, Scheme, draw_material, one_of, shade
+from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, draw_material, one_of, shade
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid, top_button, top_knob
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, split
 from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, slab, standing
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, slab, stand_up
 
 WIRE = 0.004  # radius of a bail [m]
 
 
-def laptop(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def laptop(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a closed laptop: a deck of keys and a touch pad under a screen that opens past the upright."""
     finish = one_of(rng, ("silver", "dark"))
     deck = 0.56 * h
@@ -38,7 +38,7 @@ def laptop(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     return Shape(base, (lid("screen", cover, (0.0, d / 2, low), math.radians(125)),))
 
 
-def remote(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def remote(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a remote control: a slim body with a round pad and rows of buttons; a simple one has few."""
     top = h - 0.003
     finish = one_of(rng, ("dark", "dark", "pale"))
@@ -63,7 +63,7 @@ def _key(name: str, x: float, y: float, half_x: float, half_y: float, top: float
     return top_button(name, around(half_x, x), around(half_y, y), (top + 0.0012, top + max(rise, 0.002)), finish, 0.001)
 
 
-def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a telephone that lies on its back: all screen with keys at its side, a keypad, or one that flips open."""
     finish = draw_material(rng, "dark", "silver", Finish("shell_blue", shade(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500))
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
@@ -102,7 +102,7 @@ def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, sch
     return Shape(base, (lid("cover", cover, (0.0, d / 2, low), math.radians(140)), *(replace(m, after=("cover",)) for m in movers)))
 
 
-def camera(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def camera(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a camera: a body with a lens, a release, dials, and a flash that folds up on the larger one."""
     reflex = form == "reflex"
     face, back = -0.06 * d, 0.5 * d
@@ -113,9 +113,9 @@ def camera(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     barrel = [(r, 0.0), (r, 0.35 * out), (0.88 * r, 0.36 * out), (0.88 * r, 0.55 * out)]
     base = pieces("body", cushion(around(w / 2), (face, back), (0, top), 0.008), finish)
     base += pieces("leather", box(around(0.48 * w), (face - 0.0006, face + 0.002), (0.14 * top, 0.78 * top)), "rubber", group="leather")
-    base += pieces("lens", standing(revolve(barrel, 16), lens), "plastic", group="lens")
-    zoom = pieces("zoom_ring", standing(revolve([(0.93 * r, 0.57 * out), (0.93 * r, 0.96 * out)], 16), lens), "rubber", group="zoom")
-    zoom += pieces("lens_glass", standing(revolve([(0.55 * r, 0.96 * out), (0.5 * r, out)], 16), lens), "dark_glass", group="zoom")
+    base += pieces("lens", stand_up(revolve(barrel, 16), lens), "plastic", group="lens")
+    zoom = pieces("zoom_ring", stand_up(revolve([(0.93 * r, 0.57 * out), (0.93 * r, 0.96 * out)], 16), lens), "rubber", group="zoom")
+    zoom += pieces("lens_glass", stand_up(revolve([(0.55 * r, 0.96 * out), (0.5 * r, out)], 16), lens), "dark_glass", group="zoom")
     at = (lens[0], face - 0.57 * out, lens[2])
     y = (face + back) / 2
     movers = [Mover("zoom", zoom, "revolute", (0, 1, 0), at, 0.5 * math.pi, "hinge_knob", "knob")]
@@ -133,7 +133,7 @@ def camera(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     return Shape(base, (*movers, lid("flash", flash, (0.05 * w, back, low), math.radians(60))))
 
 
-def keyboard(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def keyboard(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a keyboard: rows of keys with a space bar, or a block of figures."""
     top = h - 0.006
     finish = one_of(rng, ("dark", "silver", "pale"))
@@ -156,7 +156,7 @@ def keyboard(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
     return Shape(base, tuple(movers))
 
 
-def printer(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def printer(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a printer: a paper drawer below, a gap where sheets come out, a panel of buttons, a scanner's lid on top."""
     finish = one_of(rng, ("pale", "dark", "graphite"))
     trim = "plastic" if finish == "pale" else "trim"
@@ -197,7 +197,7 @@ def _enamel(rng: np.random.Generator) -> Material:
     return draw_material(rng, "steel", "enamel", "graphite", gay)
 
 
-def toaster(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def toaster(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a toaster: slots along its length, a lever that is pressed down, a dial and a crumb tray."""
     finish = _enamel(rng)
     stand = 0.026  # of dial and lever before the front
@@ -231,7 +231,7 @@ def toaster(rng: np.random.Generator, form: str, w: float, d: float, h: float, s
     return Shape(base, tuple(movers))
 
 
-def coffee_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def coffee_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a foot with a drip tray, a column with a tank's lid, and a head: for a jug, for a filter holder or for capsules."""
     finish = _enamel(rng)
     trim = "plastic" if finish != "graphite" else "steel"
@@ -294,7 +294,7 @@ def _jug(y: float, low: float, high: float, r: float) -> Pieces:
     return parts + pieces("jug_handle", grip, "plastic", group="jug_handle")
 
 
-def kitchen_pot(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def kitchen_pot(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a pot with a lid that lifts off: two ears, a long handle, or a bail."""
     finish = draw_material(rng, "steel", _enamel(rng), "cast_iron")
     grip = "steel" if finish != "steel" or rng.random() < 0.5 else "plastic"

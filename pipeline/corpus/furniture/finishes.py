@@ -18,10 +18,10 @@ Pattern = Literal[
 ]  # fmt: skip
 FILE = "manifests/furniture.yaml"
 PATH = Path(__file__).resolve().parents[3] / FILE
-MANNERS: Mapping[str, StyleSpec] = {name: known.spec for name, known in style.load().styles.items()}
+STYLES: Mapping[str, StyleSpec] = {name: known.spec for name, known in style.load().styles.items()}
 CLASSIC, ORIENTAL = (style.load().groups[name] for name in ("classic", "oriental"))
-COLOURS = style.load().colours
-WOODS, LACQUERS, FABRICS, LEATHERS, METALS = (COLOURS[kind] for kind in ("woods", "lacquers", "fabrics", "leathers", "metals"))
+COLORS: Mapping[str, Color] = {name: color for kind in style.load().colours.values() for name, color in kind.items()}
+LEATHERS = style.load().colours["leathers"]
 CLOTH_GROUNDS: Color = (0.72, 0.68, 0.60)  # the light thread of striped, checked and flowered cloth
 _KNOWN: dict[str, Any] = yaml.safe_load(PATH.read_text(encoding="utf-8"))
 PALETTES: Mapping[str, tuple[Color, ...]] = params.convert(Mapping[str, tuple[Color, ...]], _KNOWN["palettes"], "palettes", FILE)
@@ -49,11 +49,11 @@ class Finish:
 
 
 @dataclass(frozen=True, slots=True)
-class Scheme:
+class Finishes:
     """The finishes of one model: `body` carcass and frames, `front` doors and drawers, `accent` legs and handles, `soft` covers.
 
     `second` is a darker or lighter cover for throw pillows and seats, `handle` metal parts, `timber` bare wood, `stone` what a
-    table's top is made of where it is not wood; `material` is 3D-FUTURE's word, `style` too; `manner` is the style's.
+    table's top is made of where it is not wood; `material` and `style_name` are 3D-FUTURE's words.
     """
 
     body: Finish
@@ -63,8 +63,8 @@ class Scheme:
     soft: Finish
     second: Finish
     material: str
-    style: str
-    manner: StyleSpec
+    style_name: str
+    style: StyleSpec
     timber: Finish
     stone: Finish
 
@@ -91,29 +91,29 @@ def draw_material(rng: np.random.Generator, *materials: Material) -> Material:
 
 def wood(rng: np.random.Generator, name: str) -> Finish:
     """Return a wood of that name in a shade of its own."""
-    return Finish(name, shade(rng, WOODS[name]), 0.5, pattern="grain", density=620)
+    return Finish(name, shade(rng, COLORS[name]), 0.5, pattern="grain", density=620)
 
 
 def lacquer(rng: np.random.Generator, name: str) -> Finish:
     """Return a lacquer of that name in a shade of its own."""
-    return Finish(f"lacquer_{name}", shade(rng, LACQUERS[name], 0.05), 0.35, density=680)
+    return Finish(f"lacquer_{name}", shade(rng, COLORS[name], 0.05), 0.35, density=680)
 
 
 def cover(rng: np.random.Generator, name: str, pattern: Pattern = "weave") -> Finish:
     """Return a cloth or leather over foam; the density is that of the upholstery."""
     if name in LEATHERS:
-        return Finish(name, shade(rng, LEATHERS[name]), 0.4, pattern="leather", density=75)
+        return Finish(name, shade(rng, COLORS[name]), 0.4, pattern="leather", density=75)
     if pattern == "leather":
         pattern = "weave"
     second = CLOTH_GROUNDS if pattern in ("stripe", "check", "floral") else None
-    if second is not None and max(FABRICS[name]) > 0.5:  # a light cloth's pattern is darker than its ground
+    if second is not None and max(COLORS[name]) > 0.5:  # a light cloth's pattern is darker than its ground
         second = (0.16, 0.18, 0.22)
-    return Finish(name, shade(rng, FABRICS[name]), 0.75 if pattern == "velvet" else 0.92, pattern=pattern, density=60, second=second)
+    return Finish(name, shade(rng, COLORS[name]), 0.75 if pattern == "velvet" else 0.92, pattern=pattern, density=60, second=second)
 
 
 def metal(name: str) -> Finish:
     """Return a metal; the density is that of tubes and sheet."""
-    return Finish(name, METALS[name], 0.35, 0.85, pattern="plain", density=2600)
+    return Finish(name, COLORS[name], 0.35, 0.85, pattern="plain", density=2600)
 
 
 def cane(rng: np.random.Generator) -> Finish:
@@ -128,26 +128,26 @@ def shade(rng: np.random.Generator, color: Color, spread: float = 0.12) -> Color
     return (round(float(r), 3), round(float(g), 3), round(float(b), 3))
 
 
-def scheme(rng: np.random.Generator, style: str) -> Scheme:
+def draw_finishes(rng: np.random.Generator, style_name: str) -> Finishes:
     """Choose the finishes of a model by its style."""
-    manner = MANNERS[style]
-    timber = wood(rng, pick(rng, manner.woods))
-    tube = metal(pick(rng, manner.metals))
+    style = STYLES[style_name]
+    timber = wood(rng, pick(rng, style.woods))
+    tube = metal(pick(rng, style.metals))
     body = front = timber
     material = "Solid Wood"
     if timber.name in ("bamboo", "rattan"):
         material = "Bamboo Rattan"
-    if manner.lacquers and rng.random() < manner.paint:
-        painted = lacquer(rng, pick(rng, manner.lacquers))
+    if style.lacquers and rng.random() < style.paint:
+        painted = lacquer(rng, pick(rng, style.lacquers))
         material = "Composite Board"
         front = painted
         body = painted if rng.random() < 0.5 else timber
-    patterns: list[Pattern] = manner.cloths.split()  # type: ignore[assignment]
-    name = pick(rng, manner.fabrics)
+    patterns: list[Pattern] = style.cloths.split()  # type: ignore[assignment]
+    name = pick(rng, style.fabrics)
     soft = cover(rng, name, one_of(rng, patterns))
-    second = cover(rng, pick(rng, manner.fabrics), one_of(rng, patterns))
+    second = cover(rng, pick(rng, style.fabrics), one_of(rng, patterns))
     if second.name == soft.name:
         second = replace(second, name=f"{second.name}_2", color=shade(rng, second.color, 0.5))
-    accent = tube if rng.random() < manner.tube else timber
-    stone = FINISHES[pick(rng, manner.stones)]
-    return Scheme(body, front, accent, tube, soft, second, material, style, manner, timber, stone)
+    accent = tube if rng.random() < style.tube else timber
+    stone = FINISHES[pick(rng, style.stones)]
+    return Finishes(body, front, accent, tube, soft, second, material, style_name, style, timber, stone)

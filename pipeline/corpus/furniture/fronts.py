@@ -11,7 +11,7 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import Material
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, group_pieces, pieces
-from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, slab, stack, standing
+from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, slab, stack, stand_up
 
 PanelStyle = Literal["slab", "shaker", "raised", "glass", "dark_glass", "slats", "reeded", "cane", "mirror"]
 HandleStyle = Literal["bar", "long", "flat", "knob", "ring", "cup", "edge", "groove", "none"]
@@ -48,7 +48,7 @@ class Rect:
         """Its middle (x, z)."""
         return ((self.x[0] + self.x[1]) / 2, (self.z[0] + self.z[1]) / 2)
 
-    def shrunk(self, by: float) -> Rect:
+    def shrink(self, by: float) -> Rect:
         """Return the place with a gap all around."""
         return Rect(inset(self.x, by), inset(self.z, by), self.y)
 
@@ -135,7 +135,7 @@ def _louvres(inner: Rect, thickness: float) -> list[Solid]:
         z = inner.z[0] + (i + 0.5) * pitch
         slat = box(inner.x, around(0.003, middle), around(0.56 * pitch, z))
         angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
-        slats.append(slat.turned("x", -angle, (0.0, middle, z)))
+        slats.append(slat.rotate("x", -angle, (0.0, middle, z)))
     return slats
 
 
@@ -171,7 +171,7 @@ def handle(style: FrontStyle, rect: Rect, *, upright: bool, at: Spot, length: fl
         return ()
     if style.handle in ("knob", "ring"):
         part = "round_fixed_handle"
-        solids = standing(_round_grip(style.handle), (x, y, z))
+        solids = stand_up(_round_grip(style.handle), (x, y, z))
     elif style.handle == "cup" and not upright:
         turns = np.linspace(0, math.pi / 2, 4)
         section = [(-0.022 * math.cos(t), 0.024 * math.sin(t) - 0.008) for t in turns] + [(0.0, -0.008)]
@@ -194,7 +194,7 @@ def _round_grip(style: HandleStyle) -> list[Solid]:
     if style == "knob":
         return revolve([(0.006, 0.0), (0.0055, 0.010), (0.013, 0.018), (0.014, 0.022), (0.010, 0.026)], 10)
     rosette = revolve([(0.015, 0.0), (0.013, 0.005), (0.006, 0.010)], 10)
-    drop = [s.moved((0.0, -0.021, 0.0)) for s in ring((0.021, 0.021), (0.0155, 0.0155), (0.010, 0.016), 12)]
+    drop = [s.translate((0.0, -0.021, 0.0)) for s in ring((0.021, 0.021), (0.0155, 0.0155), (0.010, 0.016), 12)]
     return rosette + drop
 
 
@@ -317,7 +317,7 @@ def lid(name: str, parts: Pieces, hinge: tuple[float, float, float], upper: floa
 def knob(name: str, at: Axis3, radius: float, finish: Material, *, depth: float = 0.022) -> Mover:
     """Return a dial on a front plane; `at` is its middle on the plane."""
     profile = [(radius, 0.001), (radius, 0.35 * depth), (0.82 * radius, depth)]
-    dial = standing(revolve(profile, 16), at)
+    dial = stand_up(revolve(profile, 16), at)
     mark = box(around(0.0015, at[0]), (at[1] - depth - 0.002, at[1] - depth), (at[2], at[2] + 0.75 * radius))
     parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, "mark", group="knob")
     return Mover(name, parts, "revolute", (0, 1, 0), at, TURN, "hinge_knob", "knob")

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import curve, tube, turns
-from pipeline.corpus.furniture.finishes import PROFILES, Finish, Scheme, one_of
+from pipeline.corpus.furniture.finishes import PROFILES, Finish, Finishes, one_of
 from pipeline.corpus.furniture.intervals import Spot, around, between, inset, polar, split
 from pipeline.corpus.furniture.solids import Solid, beam, box, revolve, rod, stack
 
@@ -18,16 +18,16 @@ WIDE = frozenset({"sled", "cross", "plank"})  # forms that join the two legs of 
 RAKES = {"splayed": (0.12, 0.06, 0.3, 0.52), "dowel": (0.03, 0.02, 0.42, 0.42), "ming": (0.03, 0.02, 0.42, 0.42)}
 
 
-def leg_finish(scheme: Scheme, kind: str) -> Finish:
+def leg_finish(finishes: Finishes, kind: str) -> Finish:
     """Return what legs of a form are made of: metal forms of metal, others of wood, or lacquered like the fronts."""
     if kind in METAL:
-        return scheme.handle
-    return scheme.accent if scheme.accent is not scheme.handle else scheme.timber
+        return finishes.handle
+    return finishes.accent if finishes.accent is not finishes.handle else finishes.timber
 
 
-def draw_kind(rng: np.random.Generator, scheme: Scheme, without: str = "") -> str:
+def draw_kind(rng: np.random.Generator, finishes: Finishes, without: str = "") -> str:
     """Draw a leg form that the style likes; `without` names forms that do not fit here."""
-    kinds = [k for k in scheme.manner.legs.split() if k not in without.split()] or ["tapered"]
+    kinds = [k for k in finishes.style.legs.split() if k not in without.split()] or ["tapered"]
     return one_of(rng, kinds)
 
 
@@ -146,9 +146,9 @@ def _frame(kind: str, x: float, y: float, h: float, t: float) -> list[Solid]:
     return [box(around(s, x), around(y + s), (0, 1.6 * s), 0.002), *posts]
 
 
-def pedestal(rng: np.random.Generator, scheme: Scheme, radius: float, height: float) -> list[Solid]:
+def pedestal(rng: np.random.Generator, finishes: Finishes, radius: float, height: float) -> list[Solid]:
     """Return a foot and a column for a round top: a trumpet, a disc with a tube, a drum, a turned column on three feet."""
-    classic = scheme.manner.ornament > 0.5
+    classic = finishes.style.ornament > 0.5
     kind = int(rng.integers(2, 4)) if classic else int(rng.integers(3))
     r, h = radius, height
     if kind == 0:

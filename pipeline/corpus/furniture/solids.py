@@ -66,15 +66,15 @@ class Solid:
         self.vertices.max(axis=0, out=corners[1])
         return corners
 
-    def moved(self, offset: Vector) -> Solid:
+    def translate(self, offset: Vector) -> Solid:
         """Return the solid translated by `offset` (3,)."""
         return Solid(self.vertices + np.asarray(offset, float), self.faces)
 
-    def scaled(self, factors: NDArray[np.float64]) -> Solid:
+    def scale(self, factors: NDArray[np.float64]) -> Solid:
         """Return the solid scaled per axis by positive `factors` (3,) about the origin."""
         return Solid(self.vertices * factors, self.faces)
 
-    def turned(self, axis: str, angle: float, about: Vector = (0.0, 0.0, 0.0)) -> Solid:
+    def rotate(self, axis: str, angle: float, about: Vector = (0.0, 0.0, 0.0)) -> Solid:
         """Return the solid rotated by `angle` [rad], right-handed, about the `axis` (x, y or z) through a point."""
         c, s = math.cos(angle), math.sin(angle)
         i, j = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
@@ -83,11 +83,11 @@ class Solid:
         pivot = np.asarray(about, float)
         return Solid((self.vertices - pivot) @ R.T + pivot, self.faces)
 
-    def mapped(self, matrix: NDArray[np.float64]) -> Solid:
+    def transform(self, matrix: NDArray[np.float64]) -> Solid:
         """Return the solid under a linear map (3, 3) of positive determinant: sheared, stretched or turned."""
         return Solid(self.vertices @ matrix.T, self.faces)
 
-    def mirrored(self) -> Solid:
+    def mirror(self) -> Solid:
         """Return the mirror image in x, faces turned so that they still look outwards."""
         return Solid(self.vertices * np.array([-1.0, 1.0, 1.0]), tuple(f[::-1] for f in self.faces))
 
@@ -138,9 +138,9 @@ def _stack_faces(n: int, rings: int) -> tuple[Face, ...]:
     return tuple(faces)
 
 
-def standing(solids: Iterable[Solid], at: Vector) -> list[Solid]:
+def stand_up(solids: Iterable[Solid], at: Vector) -> list[Solid]:
     """Return solids made lying about the origin, turned upright to face the front (-y), what was the origin now `at` (3,)."""
-    return [s.turned("x", math.pi / 2).moved(at) for s in solids]
+    return [s.rotate("x", math.pi / 2).translate(at) for s in solids]
 
 
 def box(x: Interval, y: Interval, z: Interval, bevel: float = 0.0) -> Solid:
@@ -291,7 +291,7 @@ def revolve(profile: Sequence[Interval], n: int = 20, centre: Interval = (0.0, 0
         else:
             runs.append([runs[-1][-1], point])
     solids = [stack([_at(circle(max(r, 1e-3), n, centre), z) for r, z in run]) for run in runs]
-    return solids if squash == 1 else [s.scaled(np.array([1.0, squash, 1.0])) for s in solids]
+    return solids if squash == 1 else [s.scale(np.array([1.0, squash, 1.0])) for s in solids]
 
 
 def shell(outer: Sequence[NDArray[np.float64]], inner: Sequence[NDArray[np.float64]]) -> list[Solid]:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from pipeline.corpus.furniture import bent, texture
-from pipeline.corpus.furniture.assembly import scheme_of, shape_of
+from pipeline.corpus.furniture.assembly import finishes_of, shape_of
 from pipeline.corpus.furniture.catalogue import catalogue, lines, styles_of
-from pipeline.corpus.furniture.finishes import MANNERS, Finish
-from pipeline.corpus.furniture.shape import frozen, pieces
+from pipeline.corpus.furniture.finishes import STYLES, Finish
+from pipeline.corpus.furniture.shape import freeze, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, merge_solids, normals, pillow, topology
 from pipeline.corpus.furniture.wavefront import sides_of
 from pipeline.seeds import generator
@@ -112,13 +112,13 @@ def test_there_are_enough_models_of_every_category():
 
 
 def test_forms_and_styles_suit_each_other():
-    assert {s for line in lines().values() for form in line.forms.values() for s in styles_of(form)} == set(MANNERS)
+    assert {s for line in lines().values() for form in line.forms.values() for s in styles_of(form)} == set(STYLES)
     for model in catalogue(1).future:
         forms = lines()[model.category].forms
         assert model.style in styles_of(forms[model.form]) or model.form == next(iter(forms))
-    assert {m.style for m in catalogue(0).future} == set(MANNERS)
-    assert len(MANNERS) == 19
-    assert sum(m.share for m in MANNERS.values()) == pytest.approx(1)
+    assert {m.style for m in catalogue(0).future} == set(STYLES)
+    assert len(STYLES) == 19
+    assert sum(m.share for m in STYLES.values()) == pytest.approx(1)
 
 
 def test_styles_differ_in_what_they_are_made_of():
@@ -126,8 +126,8 @@ def test_styles_differ_in_what_they_are_made_of():
     seen: dict[str, set[str]] = {}
     for seed in (0, 1):
         for model in catalogue(seed).future:
-            scheme = scheme_of(model)
-            seen.setdefault(model.style, set()).update(f.name for f in (scheme.body, scheme.soft, scheme.handle, scheme.timber))
+            finishes = finishes_of(model)
+            seen.setdefault(model.style, set()).update(f.name for f in (finishes.body, finishes.soft, finishes.handle, finishes.timber))
     for a, b in (
         ("Nordic", "Industrial"),
         ("Japanese", "European Classic"),
@@ -152,7 +152,7 @@ def test_triangles_of_static_models():
 
 def test_no_piece_is_deep_in_another():
     for model in chosen():
-        parts = list(frozen(shape_of(model)).pieces())
+        parts = list(freeze(shape_of(model)).pieces())
         solids = [p.solid for p in parts]
         low = np.array([s.vertices.min(axis=0) for s in solids]) + WOODEN
         high = np.array([s.vertices.max(axis=0) for s in solids]) - WOODEN
