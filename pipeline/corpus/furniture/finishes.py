@@ -89,14 +89,9 @@ def draw_material(rng: np.random.Generator, *materials: Material) -> Material:
     return one_of(rng, materials)
 
 
-def wood(rng: np.random.Generator, name: str) -> Finish:
-    """Return a wood of that name in a shade of its own."""
-    return Finish(name, shade(rng, COLORS[name]), 0.5, pattern="grain", density=620)
-
-
-def lacquer(rng: np.random.Generator, name: str) -> Finish:
+def lacquer(rng: np.random.Generator, name: str, roughness: float = 0.35) -> Finish:
     """Return a lacquer of that name in a shade of its own."""
-    return Finish(f"lacquer_{name}", shade(rng, COLORS[name], 0.05), 0.35, density=680)
+    return Finish(f"lacquer_{name}", shade(rng, COLORS[name], 0.05), roughness, density=680)
 
 
 def cover(rng: np.random.Generator, name: str, pattern: Pattern = "weave") -> Finish:
@@ -109,11 +104,6 @@ def cover(rng: np.random.Generator, name: str, pattern: Pattern = "weave") -> Fi
     if second is not None and max(COLORS[name]) > 0.5:  # a light cloth's pattern is darker than its ground
         second = (0.16, 0.18, 0.22)
     return Finish(name, shade(rng, COLORS[name]), 0.75 if pattern == "velvet" else 0.92, pattern=pattern, density=60, second=second)
-
-
-def metal(name: str) -> Finish:
-    """Return a metal; the density is that of tubes and sheet."""
-    return Finish(name, COLORS[name], 0.35, 0.85, pattern="plain", density=2600)
 
 
 def cane(rng: np.random.Generator) -> Finish:
@@ -131,12 +121,12 @@ def shade(rng: np.random.Generator, color: Color, spread: float = 0.12) -> Color
 def draw_finishes(rng: np.random.Generator, style_name: str) -> Finishes:
     """Choose the finishes of a model by its style."""
     style = STYLES[style_name]
-    timber = wood(rng, pick(rng, style.woods))
-    tube = metal(pick(rng, style.metals))
+    wood = pick(rng, style.woods)
+    timber = Finish(wood, shade(rng, COLORS[wood]), 0.5, pattern="grain", density=620)
+    metal = pick(rng, style.metals)
+    tube = Finish(metal, COLORS[metal], 0.35, 0.85, density=2600)  # as dense as tubes and sheet are
     body = front = timber
-    material = "Solid Wood"
-    if timber.name in ("bamboo", "rattan"):
-        material = "Bamboo Rattan"
+    material = "Bamboo Rattan" if wood in ("bamboo", "rattan") else "Solid Wood"
     if style.lacquers and rng.random() < style.paint:
         painted = lacquer(rng, pick(rng, style.lacquers))
         material = "Composite Board"

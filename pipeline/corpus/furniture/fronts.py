@@ -94,12 +94,8 @@ def _panel(rect: Rect, style: FrontStyle) -> Pieces:
 
 def frame(rect: Rect, inner: Rect, depth: Interval, bevel: float = 0.002) -> list[Solid]:
     """Return stiles and rails around `inner`, over the interval `depth` in y [m]."""
-    return [
-        box((rect.x[0], inner.x[0]), depth, rect.z, bevel),
-        box((inner.x[1], rect.x[1]), depth, rect.z, bevel),
-        box(inner.x, depth, (rect.z[0], inner.z[0]), bevel),
-        box(inner.x, depth, (inner.z[1], rect.z[1]), bevel),
-    ]
+    stiles = [box(x, depth, rect.z, bevel) for x in ((rect.x[0], inner.x[0]), (inner.x[1], rect.x[1]))]
+    return stiles + [box(inner.x, depth, z, bevel) for z in ((rect.z[0], inner.z[0]), (inner.z[1], rect.z[1]))]
 
 
 def _filling(inner: Rect, style: FrontStyle) -> Pieces:

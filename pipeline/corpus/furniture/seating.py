@@ -14,6 +14,12 @@ from pipeline.corpus.furniture.solids import Solid, beam, board, box, circle, cu
 from pipeline.corpus.furniture.textiles import piping, seat_cushion, tufted_panel, upright_pad
 
 TUBE = 0.011  # radius of bent steel
+# Backs of nothing but rails: shares of the height from and to which each reaches, and how deep it is in thicknesses of the posts.
+RAILS = {
+    "ladder": [(a, a + 0.11, 0.55) for a in (0.14, 0.38, 0.62)],
+    "panel": [(0.28, 0.8, 0.5)],
+    "cane": [(0.2, 0.3, 0.8)],
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +66,10 @@ def back(rng: np.random.Generator, kind: str, frame: Frame, finishes: Finishes) 
     else:
         wood = posts(frame, turned=kind in ("spindle", "ladder") and finishes.style.ornament > 0.3)
         wood.append(frame.bar(0.86, 1.0, t))
-        wood += {"slat": _slats, "ladder": _ladder, "panel": _panel, "splat": _splat, "spindle": _spindles, "cross": _cross}.get(
-            kind, _rail
-        )(frame)
+        if kind in RAILS:
+            wood += [frame.bar(low, high, t, deep) for low, high, deep in RAILS[kind]]
+        else:
+            wood += {"slat": _slats, "splat": _splat, "spindle": _spindles, "cross": _cross}[kind](frame)
         if kind == "cane":
             rise = frame.high - frame.low
             inset = 1.0 * t
@@ -72,24 +79,12 @@ def back(rng: np.random.Generator, kind: str, frame: Frame, finishes: Finishes) 
     return pieces("back", tilted, frame.wood) + pieces("back_pad", lean(soft, frame.low, frame.slope), finishes.soft) + other
 
 
-def _rail(frame: Frame) -> list[Solid]:
-    return [frame.bar(0.2, 0.3, frame.thick)]
-
-
 def _slats(frame: Frame) -> list[Solid]:
     rise, t = frame.high - frame.low, frame.thick
     count = max(3, round(2 * frame.x / 0.1))
     xs = np.linspace(-frame.x + 2.2 * t, frame.x - 2.2 * t, count)
     low, high = frame.low + 0.24 * rise, frame.low + 0.86 * rise
     return [frame.bar(0.16, 0.24, t), *(box(around(0.016, x), around(0.006, frame.y), (low, high), 0.002) for x in xs)]
-
-
-def _ladder(frame: Frame) -> list[Solid]:
-    return [frame.bar(a, a + 0.11, frame.thick, 0.55) for a in (0.14, 0.38, 0.62)]
-
-
-def _panel(frame: Frame) -> list[Solid]:
-    return [frame.bar(0.28, 0.8, frame.thick, 0.5)]
 
 
 def _splat(frame: Frame) -> list[Solid]:

@@ -157,12 +157,8 @@ def box(x: Interval, y: Interval, z: Interval, bevel: float = 0.0) -> Solid:
 
 def strips(x: Interval, y: Interval, hole_x: Interval, hole_y: Interval, z: Interval, bevel: float = 0.0) -> list[Solid]:
     """Return four boxes over `z` around a hole in the rectangle `x`, `y`: those at its sides take all of `y`."""
-    return [
-        box((x[0], hole_x[0]), y, z, bevel),
-        box((hole_x[1], x[1]), y, z, bevel),
-        box(hole_x, (y[0], hole_y[0]), z, bevel),
-        box(hole_x, (hole_y[1], y[1]), z, bevel),
-    ]
+    spans = [((x[0], hole_x[0]), y), ((hole_x[1], x[1]), y), (hole_x, (y[0], hole_y[0])), (hole_x, (hole_y[1], y[1]))]
+    return [box(a, b, z, bevel) for a, b in spans]
 
 
 def walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0.0) -> list[Solid]:

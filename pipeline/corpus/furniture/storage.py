@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.casework import Case, Cell, Column, Feet, case, drawers, grid
-from pipeline.corpus.furniture.finishes import COLORS, Finish, Finishes, one_of, pick, shade
+from pipeline.corpus.furniture.finishes import COLORS, Finish, Finishes, lacquer, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, HandleStyle, PanelStyle
 from pipeline.corpus.furniture.intervals import Interval, around
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
@@ -129,11 +129,6 @@ def facing_doors(count: int, shelves: int) -> list[Column]:
     return [Column(1, (Cell("left" if i < count / 2 else "right", 1, shelves),)) for i in range(count)]
 
 
-def glass_front(how: Case) -> FrontStyle:
-    """Return the style of a case's glass doors."""
-    return replace(how.style, panel="glass")
-
-
 def flush_front(style: FrontStyle) -> FrontStyle:
     """Return the style of leaves that pass each other: nothing stands out of them."""
     return replace(style, panel="slab") if style.panel in ("raised", "slats") else style
@@ -148,11 +143,9 @@ def doors_of(rng: np.random.Generator, width: float, share: float, shelves: int)
 
 def children_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Cubes, open and closed, or doors over drawers, in two gay colours."""
-    names = sorted({"mint", "dusty_blue", "blush", "mustard", "white"})
-    first, second = (str(n) for n in rng.choice(names, 2, replace=False))
-    gay = [Finish(f"lacquer_{n}", shade(rng, COLORS[n], 0.05), 0.4, density=680) for n in (first, second)]
-    style = FrontStyle("slab", "knob", gay[0], finishes.accent)
-    other = replace(style, finish=gay[1])
+    first, second = (str(name) for name in rng.choice(["blush", "dusty_blue", "mint", "mustard", "white"], 2, replace=False))
+    style = FrontStyle("slab", "knob", lacquer(rng, first, 0.4), finishes.accent)
+    other = replace(style, finish=lacquer(rng, second, 0.4))
     how = case_style(rng, finishes, "plinth square", (0.06, 0.1), style=style)
     count = max(1, min(4, round(w / 0.5)))
     rows = max(2, min(5, round(h / 0.42)))
@@ -177,7 +170,7 @@ def sideboard(rng: np.random.Generator, form: str, w: float, d: float, h: float,
         return case((w, d, h), grid(max(1, count - 1), Cell("drawer")), how)
     how = case_style(rng, finishes, "tapered square sled plinth", (0.09, 0.2))
     if h > 1.35:
-        upper, lower = Cell("pair", 1.3, 2, glass_front(how)), Cell("pair", 0.8, 1)
+        upper, lower = Cell("pair", 1.3, 2, replace(how.style, panel="glass")), Cell("pair", 0.8, 1)
         return case((w, d, h), grid(max(1, round(w / 0.8)), upper, Cell("drawer", 0.25), lower), how)
     if form == "sliding":
         looks = replace(flush_front(how.style), handle="none")
@@ -212,7 +205,7 @@ def wine_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     count = max(1, round(w / 0.6))
     if form == "glass":
         door = doors_of(rng, w / count, 2.0, max(2, round(h / 0.4)))
-        return case((w, d, h), grid(count, replace(door, panel=glass_front(how)), Cell("drawer", 0.35)), how)
+        return case((w, d, h), grid(count, replace(door, panel=replace(how.style, panel="glass")), Cell("drawer", 0.35)), how)
     columns = [Column(1, (Cell("open", 1.3, 2), doors_of(rng, w / count, 1.0, 1))) for _ in range(count)]
     shape = case((w, d, h), columns, how)
     bottles: list[Piece] = []
@@ -250,7 +243,7 @@ def bookshelf(rng: np.random.Generator, form: str, w: float, d: float, h: float,
     if form == "open":
         columns = grid(count, Cell("open", 1, rows - 1))
     elif form == "glass":
-        door = replace(doors_of(rng, w / count, 3.0, rows - 2), panel=glass_front(how))
+        door = replace(doors_of(rng, w / count, 3.0, rows - 2), panel=replace(how.style, panel="glass"))
         columns = grid(count, door, Cell("drawer", 0.55))
     else:
         columns = [Column(1, (Cell("open", 1.9, rows - 3), doors_of(rng, w / count, 0.9, 1))) for _ in range(count)]
