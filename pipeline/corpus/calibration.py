@@ -21,16 +21,13 @@ from pipeline.corpus.houses.records import House, Item
 from pipeline.manifest import write_bytes, write_json
 
 Json = Mapping[str, Any]
-STANDING = 0.3
-"""What starts lower stands on the floor [m]."""
+STANDING = 0.3  # what starts lower stands on the floor [m]
 SOFAS = frozenset({"multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa"})
 DINING = frozenset({"dining_chair", "chinese_chair"})
-NEAR_TABLE, ABOVE_TABLE = 1.6, 0.45
-"""A chair belongs to a table within this distance, a lamp hangs above one within that [m]."""
+NEAR_TABLE, ABOVE_TABLE = 1.6, 0.45  # a chair belongs to a table within this distance, a lamp hangs above one within that [m]
 TOTAL_VARIATION, RELATIVE = 0.05, 0.10
 HISTOGRAM = ((1, 3), (4, 6), (7, 9), (10, 12), (13, 15), (16, 99))
-LEAST_MODELS = 20
-"""Sizes are held to the reference where it counted so many models."""
+LEAST_MODELS = 20  # sizes are held to the reference where it counted so many models
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,8 +32,7 @@ MATERIALS = {
     "Window": [220, 225, 228, 255],
 }
 TITLES = {"swing": "door/single swing door", "sliding": "door/sliding door", "entry": "door/entrance door", "window": "window/window"}
-GARBAGE_NORMAL = (-3.932, 1, -2.043)
-"""What floors of the 0.4 dialect carry for normals."""
+GARBAGE_NORMAL = (-3.932, 1, -2.043)  # what floors of the 0.4 dialect carry for normals
 
 
 class SceneFile:

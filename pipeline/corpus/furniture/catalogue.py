@@ -15,10 +15,8 @@ from pipeline.card import Corpus, Form, Size, cards
 from pipeline.corpus.furniture.finishes import STYLES, SUPER_CATEGORIES
 
 TAIL = float(ndtri(0.95))
-MOST_SKEWED = 1.2
-"""Largest shape parameter of the log-normal; beyond it a handful of draws cannot show the spread."""
-LEAST, MOST = 0.75, 1.3
-"""No draw is smaller than this share of the 5th percentile, or larger than this multiple of the 95th."""
+MOST_SKEWED = 1.2  # largest shape parameter of the log-normal; beyond it a handful of draws cannot show the spread
+LEAST, MOST = 0.75, 1.3  # no draw is smaller than this share of the 5th percentile, or larger than this multiple of the 95th
 ROUNDS = 6
 
 

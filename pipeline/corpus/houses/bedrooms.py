@@ -8,11 +8,8 @@ from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, on_side, shift_spot
 
-FARTHEST_TV = 1.2
-"""Most free floor between a bed's foot and the TV stand [m]."""
-FOOT = 0.6
-SIDE = 0.5
-"""Free floor at the foot and beside a bed [m]."""
+FARTHEST_TV = 1.2  # most free floor between a bed's foot and the TV stand [m]
+FOOT, SIDE = 0.6, 0.5  # free floor at the foot and beside a bed [m]
 BESIDE = ((0.52, 0.75), (0.47, 0.62), (0.42, 0.52), (0.4, 0.45))
 """What is left beside a double bed, for nightstands and to get in, drawn from a range at each attempt: less, before the bed becomes a smaller one [m]."""
 SEATS = frozenset({"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa", "stool", "plant", "floor_lamp"})
@@ -144,11 +141,7 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
     space = arranger.space
     model, spot = bed
     facing = [i for i, s in enumerate(space.sides) if abs(np.cos(s.yaw - spot.yaw) + 1) < 1e-6]
-    width = 2.4
-    for _ in range(3):
-        stand = arranger.pick("tv_stand", width=width, depth=0.55)
-        if stand is None:
-            return False
+    for stand in arranger.smaller("tv_stand", 3, 0.9, width=2.4, depth=0.55):
         for i in facing:
             side = space.sides[i]
             s, _ = side.along((spot.x, spot.y, spot.x, spot.y))
@@ -160,7 +153,6 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
                 stand, place, keep=[ahead(place, stand.size[1], 0.4, stand.size[0])]
             ):
                 return True
-        width = stand.size[0] * 0.9
     return False
 
 

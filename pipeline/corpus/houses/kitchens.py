@@ -4,15 +4,12 @@ from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger, free_front
 from pipeline.corpus.houses.room_occupancy import ahead, on_side
 
-FRONT = 0.75
-"""Free floor before a run: an open door and a cook [m]."""
+FRONT = 0.75  # free floor before a run: an open door and a cook [m]
 SEAM = 0.002
-SMALL = 7.0
-"""Kitchens of less floor have no other wall for a refrigerator [m2]."""
+SMALL = 7.0  # kitchens of less floor have no other wall for a refrigerator [m2]
 NEEDED = frozenset({"sink_cabinet", "oven", "refrigerator", "kitchen_cabinet"})
 """Nobody cooks without one of each: their least widths are kept free until they stand."""
-HUNG_AT = 1.45
-"""Underside of the wall units [m]."""
+HUNG_AT = 1.45  # underside of the wall units [m]
 
 
 def furnish_kitchen(arranger: Arranger) -> None:

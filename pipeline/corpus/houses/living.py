@@ -11,20 +11,13 @@ from pipeline.corpus.houses.rates import load
 from pipeline.corpus.houses.room_occupancy import Side, Space, Spot, ahead, back_gap, meets, on_side, shift_spot
 
 CHAIRS = {"two": 2, "four": 4, "six": 6, "eight": 8}
-ACROSS = 0.6
-"""Usual distance of a chair's middle from the table's long axis [m]: it reaches under a deep table."""
-UNDER = 0.35
-"""Most of a chair's depth that is under the table."""
-OFF_LAMP = 0.1
-"""Deviation of the lamp from the table's middle [m]."""
-DEEPEST = {2: 0.95, 4: 1.0, 6: 1.15, 8: 1.5}
-"""Depth of a table for so many, where there is one [m]."""
-BEHIND = 0.3
-"""Free floor behind a chair [m]."""
-SQUARE = 1.25
-"""Four sit around a table whose length is at most so many times its depth, one on each side."""
-SQUARE_SHARE = 0.35
-"""Share of the tables for four that are square, where there is one."""
+ACROSS = 0.6  # usual distance of a chair's middle from the table's long axis [m]: it reaches under a deep table
+UNDER = 0.35  # most of a chair's depth that is under the table
+OFF_LAMP = 0.1  # deviation of the lamp from the table's middle [m]
+DEEPEST = {2: 0.95, 4: 1.0, 6: 1.15, 8: 1.5}  # depth of a table for so many, where there is one [m]
+BEHIND = 0.3  # free floor behind a chair [m]
+SQUARE = 1.25  # four sit around a table whose length is at most so many times its depth, one on each side
+SQUARE_SHARE = 0.35  # share of the tables for four that are square, where there is one
 SIDE_TABLES = {"none": 0, "one": 1, "two": 2}
 
 

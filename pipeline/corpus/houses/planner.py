@@ -21,20 +21,15 @@ ROOMS = rates.load()["rooms"]
 AREAS: dict[str, tuple[float, float, float, float]] = {name: room["area"] for name, room in ROOMS.items() if "area" in room}
 BEDROOMS = tuple(name for name, room in ROOMS.items() if room["plan"] == "bedroom")
 PRIVATE = (*BEDROOMS, "Library")
-LOW, HIGH = 0.85, 1.12
-"""Rooms are built no smaller than this part of the least area of their type, no larger than this part of the largest."""
-FEW = 3
-"""Rooms that may open off a living room without a corridor."""
+LOW, HIGH = 0.85, 1.12  # rooms are built no smaller than this part of the least area of their type, no larger than this part of the largest
+FEW = 3  # rooms that may open off a living room without a corridor
 SHAPES = {"rectangle": 0.3, "L": 0.4, "T": 0.3}
-BLOCK = 32
-"""Houses over which decisions are dealt evenly."""
-MOST_PRIVATE = 5
-"""Rooms that a plan can hold beside the living rooms."""
+BLOCK = 32  # houses over which decisions are dealt evenly
+MOST_PRIVATE = 5  # rooms that a plan can hold beside the living rooms
 CORRIDORS = ("Hallway", "Aisle", "Corridor")
-KINDS: Mapping[str, str] = {name: room["chances"] for name, room in rates.load()["rooms"].items()}  # whose chances furnish a type of room
+KINDS: Mapping[str, str] = {name: room["chances"] for name, room in ROOMS.items()}  # whose chances furnish a type of room
 PROGRAMS = 24
-LARGEST_AISLE = 3.1
-"""What is larger is called a corridor [m2]."""
+LARGEST_AISLE = 3.1  # what is larger is called a corridor [m2]
 
 
 def area(rng: np.random.Generator, room_type: str) -> float:
@@ -94,7 +89,7 @@ def sample(rng: np.random.Generator, furnished: Sequence[str]) -> tuple[FloorPro
     living = home.room("LivingDiningRoom" if together else "LivingRoom")
     dines = "DiningRoom" in furnished or (not together and rng.random() < 0.25)
     dining = home.room("DiningRoom", living, "open") if dines else living
-    entry = {"Hallway", "Aisle", "Corridor"} & set(furnished) or rng.random() < 0.40
+    entry = set(CORRIDORS) & set(furnished) or rng.random() < 0.40
     hall = home.room("Hallway", living, "open") if entry else living
     baths = ["Bathroom"] + ["SecondBathroom"] * (len(private) >= 3 and rng.random() < 0.35)
     apart = len(private) + len(baths) > FEW or not together or rng.random() < 0.45
@@ -216,14 +211,10 @@ def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:
             plan = solve(program, int(rng.integers(2**31)))
         except RefusedError:
             continue
-        return _as_front(plan, types, float(rng.uniform(1.45, 1.57)))
+        angle = float(rng.uniform(1.45, 1.57))  # of open leaves [rad]
+        openings = (o if o.swing is None else replace(o, swing=replace(o.swing, angle=angle)) for o in plan.openings)
+        return replace(plan, rooms=tuple(replace(r, type=_front_type(r, types)) for r in plan.rooms), openings=tuple(openings))
     raise ContentError(f"no house plan after {PROGRAMS} programs", "choose another seed in params.yaml")
-
-
-def _as_front(plan: Plan, types: Mapping[str, str], angle: float) -> Plan:
-    """Return the plan with 3D-FRONT's types, its leaves open by `angle` [rad]."""
-    openings = (o if o.swing is None else replace(o, swing=replace(o.swing, angle=angle)) for o in plan.openings)
-    return replace(plan, rooms=tuple(replace(r, type=_front_type(r, types)) for r in plan.rooms), openings=tuple(openings))
 
 
 def _front_type(room: Room, types: Mapping[str, str]) -> str:

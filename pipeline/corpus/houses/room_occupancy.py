@@ -17,19 +17,14 @@ from pipeline.corpus.houses.records import Item, Rect, wrap
 from pipeline.entities.plan import Opening, Room
 
 FAR = 50.0
-LOW = 1.0
-"""Boxes that start above this height do not stand in the way on the floor [m]."""
+LOW = 1.0  # boxes that start above this height do not stand in the way on the floor [m]
 EPSILON = 1e-4
-STEP = 0.5
-"""Free floor before an opening [m]; less before a wide one in a room narrower than NARROW, such as a balcony."""
+STEP = 0.5  # free floor before an opening [m]; less before a wide one in a room narrower than NARROW, such as a balcony
 NARROW = 1.7
-LEAF_TOP = 2.12
-"""Nothing hangs lower than this where a door leaf swings [m]."""
-LOW_PIECE = 0.65
-"""What is no higher than this may stand before any window [m]."""
+LEAF_TOP = 2.12  # nothing hangs lower than this where a door leaf swings [m]
+LOW_PIECE = 0.65  # what is no higher than this may stand before any window [m]
 CELL = 0.1
-WAY = 0.3
-"""Half the width that people leave for the ways through their rooms [m]."""
+WAY = 0.3  # half the width that people leave for the ways through their rooms [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,13 +78,11 @@ def box_of(x: float, y: float, yaw: float, width: float, depth: float) -> Rect:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """A place for a piece: centre [m, world], yaw, and where it came from along a side."""
+    """A place for a piece: centre [m, world] and yaw."""
 
     x: float
     y: float
     yaw: float
-    side: int = -1
-    s: float = 0.0
 
     def box(self, width: float, depth: float) -> Rect:
         """Return the bounds of a piece of that width and depth there."""
@@ -111,7 +104,7 @@ def ahead(spot: Spot, depth: float, reach: float, width: float) -> Rect:
 def shift_spot(spot: Spot, right: float, front: float, turn: float = 0.0) -> Spot:
     """Return the spot moved in its own frame (x to the right as its width runs, front forwards) and turned."""
     c, s = math.cos(spot.yaw), math.sin(spot.yaw)
-    return Spot(spot.x + c * right + s * front, spot.y + s * right - c * front, wrap(spot.yaw + turn), spot.side, spot.s)
+    return Spot(spot.x + c * right + s * front, spot.y + s * right - c * front, wrap(spot.yaw + turn))
 
 
 class Space:
@@ -227,14 +220,13 @@ def against(
     front: float,
     corner: float = 0.5,
     low: float = 0.0,
-    sides: Sequence[int] | None = None,
 ) -> Spot | None:
     """Return a place with the back to a wall, `front` metres free before it; with chance `corner` at a stretch's end."""
     w, d, h = model.size
     gap = back_gap(rng)
     candidates: list[tuple[int, float, float]] = []
-    for i in range(len(space.sides)) if sides is None else sides:
-        candidates += [(i, a, b) for a, b in space.spans(space.sides[i], d + gap, front, low, low + h) if b - a >= w + 0.02]
+    for i, side in enumerate(space.sides):
+        candidates += [(i, a, b) for a, b in space.spans(side, d + gap, front, low, low + h) if b - a >= w + 0.02]
     if not candidates:
         return None
     if corner >= 0.95:  # the room's own corners first
@@ -255,7 +247,7 @@ def against(
 def on_side(space: Space, side: int, s: float, depth: float, gap: float) -> Spot:
     """Return the spot of a piece of that depth, `s` along a wall, `gap` off it [m]."""
     x, y = space.sides[side].point(s, gap + depth / 2)
-    return Spot(x, y, space.sides[side].yaw, side, s)
+    return Spot(x, y, space.sides[side].yaw)
 
 
 def back_gap(rng: np.random.Generator) -> float:

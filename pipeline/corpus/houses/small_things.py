@@ -19,13 +19,10 @@ from pipeline.corpus.houses.room_occupancy import against, box_of, meets, proble
 from pipeline.corpus.houses.stock import Surfaces
 from pipeline.entities.plan import Opening
 
-MARGIN = 0.01
-"""Least distance of a thing from the edge it lies at, and from another thing [m]."""
+MARGIN = 0.01  # least distance of a thing from the edge it lies at, and from another thing [m]
 TRIES = 6
-LOWEST, HIGHEST = 0.03, 1.75
-"""Surfaces within these heights above the support's foot are used [m]."""
-HUNG_AT = 1.35
-"""Underside of pictures and mirrors [m]."""
+LOWEST, HIGHEST = 0.03, 1.75  # surfaces within these heights above the support's foot are used [m]
+HUNG_AT = 1.35  # underside of pictures and mirrors [m]
 
 
 def add_small_things(arranger: Arranger, openings: Sequence[Opening], kind: str) -> None:
@@ -68,7 +65,7 @@ def load(arranger: Arranger, index: int, wanted: Mapping[str, float]) -> None:
                 break
             place = _place(rng, model, support, surfaces, taken, others)
             if place is not None:
-                space.items.append(dataclasses.replace(place, room=space.number, support=index))
+                space.items.append(dataclasses.replace(place, support=index))
 
 
 def _place(
@@ -98,19 +95,15 @@ def _place(
             continue
         if any((a - MARGIN < high).all() and (b + MARGIN > low).all() for a, b in taken):
             continue
-        item = _in_world(model, support, x, y, float(top[4]), turn)
+        px, py, pz = support.position
+        c, s = math.cos(support.yaw), math.sin(support.yaw)
+        item = Item(model, support.room, (px + c * x - s * y, py + s * x + c * y, pz + float(top[4])), wrap(support.yaw + turn))
         box, z = item.rect(), item.position[2]
         if any(z < t and b < z + h and meets(box, r) for r, b, t in others):
             continue
         taken.append((low, high))
         return item
     return None
-
-
-def _in_world(model: Model, support: Item, x: float, y: float, z: float, turn: float) -> Item:
-    c, s = math.cos(support.yaw), math.sin(support.yaw)
-    px, py, pz = support.position
-    return Item(model, support.room, (px + c * x - s * y, py + s * x + c * y, pz + z), wrap(support.yaw + turn))
 
 
 def lay_rug(arranger: Arranger, share: float) -> None:
@@ -180,5 +173,4 @@ def _on_floor(arranger: Arranger, category: str) -> None:
     spot = against(arranger.rng, space, model, front=0.0, corner=0.8)
     cut_off = problems(space)[0]
     if spot is not None and space.try_add(model, spot) and problems(space)[0] > cut_off:
-        space.items.pop()
-        space.solids.pop()
+        space.take_back()

@@ -12,14 +12,10 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import Model
 
-LEVEL = 1e-4
-"""Vertices within this height of the highest lie on the top [m]."""
-LEAST = 0.07
-"""Narrowest top that anything lies on [m]."""
-SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)
-"""What share of a top's bounds is tried: all of a board, two thirds of a disc."""
-STYLE_WEIGHT = 3.0
-"""How much likelier a model in the house's own style is taken than another."""
+LEVEL = 1e-4  # vertices within this height of the highest lie on the top [m]
+LEAST = 0.07  # narrowest top that anything lies on [m]
+SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)  # what share of a top's bounds is tried: all of a board, two thirds of a disc
+STYLE_WEIGHT = 3.0  # how much likelier a model in the house's own style is taken than another
 
 
 @dataclass(frozen=True, slots=True)
