@@ -96,10 +96,10 @@ def _standardise(values: NDArray[np.float64], free: NDArray[np.bool_], size: Siz
 
 
 @functools.cache
-def lines() -> Mapping[str, Corpus]:
+def corpus_cards() -> Mapping[str, Corpus]:
     """Return what the cards say of the corpus, by category, in the corpus's order."""
-    made = [c for c in cards().values() if c.corpus.forms]
-    return {c.name: c.corpus for c in sorted(made, key=lambda c: (c.order if c.corpus.order is None else c.corpus.order, c.name))}
+    listed = [c for c in cards().values() if c.corpus.forms]
+    return {c.name: c.corpus for c in sorted(listed, key=lambda c: (c.order if c.corpus.order is None else c.corpus.order, c.name))}
 
 
 def styles_of(form: Form) -> tuple[str, ...]:
@@ -144,29 +144,29 @@ def catalogue(seed: int, size: float = 1.0) -> Catalogue:
     """Return the models of a seed. `size` scales their number: 1 gives some 900 static and 350 articulated ones."""
     future: list[Model] = []
     partnet: list[Model] = []
-    for category, line in lines().items():
-        future += _models(seed, category, line, max(1, round(line.static * size)), articulated=False)
-        if line.moving:
-            partnet += _models(seed, category, line, max(1, round(line.moving * size)), articulated=True)
+    for category, card in corpus_cards().items():
+        future += _models(seed, category, card, max(1, round(card.static * size)), articulated=False)
+        if card.moving:
+            partnet += _models(seed, category, card, max(1, round(card.moving * size)), articulated=True)
     return Catalogue(tuple(future), tuple(_assign_ids(seed, partnet)))
 
 
-def _models(seed: int, category: str, line: Corpus, count: int, *, articulated: bool) -> list[Model]:
+def _models(seed: int, category: str, card: Corpus, count: int, *, articulated: bool) -> list[Model]:
     """Draw `count` models of one category: forms in turn, styles at random, sizes in strata."""
     rng = seeds.generator(seed, "corpus.furniture", "partnet" if articulated else "future", category)
     entry = taxonomy.load().categories[category]
-    usable = [name for name, form in line.forms.items() if not (articulated and form.still)]
+    usable = [name for name, form in card.forms.items() if not (articulated and form.still)]
     start = int(rng.integers(len(usable)))  # dealt round robin from there, so that each comes equally often
     names = [usable[(start + i) % len(usable)] for i in range(count)]
-    forms = [line.forms[name] for name in names]
+    forms = [card.forms[name] for name in names]
     styles = [_style(rng, form) for form in forms]
     boxes = draw_sizes(rng, cards()[category].size, count, [form.round for form in forms])
     _raise(forms, boxes)
     models = []
     for wanted, look, box in zip(names, styles, boxes, strict=True):
         w, d, h = (round(float(x), 3) for x in box)
-        name = wanted if h >= line.forms[wanted].least_height else next(iter(line.forms))
-        form = line.forms[name]
+        name = wanted if h >= card.forms[wanted].least_height else next(iter(card.forms))
+        form = card.forms[name]
         models.append(
             Model(
                 model_id=str(uuid.UUID(bytes=rng.bytes(16), version=4)),
@@ -174,7 +174,7 @@ def _models(seed: int, category: str, line: Corpus, count: int, *, articulated: 
                 size=(w, w if form.round else d, w if form.upright else h),
                 style=look,
                 form=name,
-                future_name=form.name or line.name,
+                future_name=form.name or card.name,
                 super_category=SUPER_CATEGORIES.get(entry.super, "Others"),
                 partnet_category=entry.names.partnet[0] if articulated else "",
                 seed=int(rng.integers(2**31)),

@@ -74,7 +74,7 @@ class Arranger:
         front = free_front(category, 0.35)
         for model in self.smaller(category, tries, 0.95):
             spot = against(self.rng, self.space, model, front=front, corner=corner)
-            if spot is not None and self.space.try_add(model, spot, keep=[ahead(spot, model.size[1], front, model.size[0])]):
+            if spot is not None and self.space.try_add(model, spot, clearances=[ahead(spot, model.size[1], front, model.size[0])]):
                 return True
         return False
 

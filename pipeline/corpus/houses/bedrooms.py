@@ -76,12 +76,12 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
             weights = np.array([w for w, _ in candidates])
             spot = candidates[int(rng.choice(len(candidates), p=weights / weights.sum()))][1]
             w, d, _ = model.size
-            keep = [shift_spot(spot, 0.0, d / 2 + FOOT / 2).box(w * 0.8, FOOT)]
+            clearances = [shift_spot(spot, 0.0, d / 2 + FOOT / 2).box(w * 0.8, FOOT)]
             for sign in (-1, 1):
                 lane = shift_spot(spot, sign * (w / 2 + SIDE / 2), 0.3).box(SIDE, d - 0.6)
                 if space.clear(lane):
-                    keep.append(lane)
-            space.add(model, spot, keep=keep)
+                    clearances.append(lane)
+            space.add(model, spot, clearances=clearances)
             return model, spot
         if attempt >= 1:
             width = max(model.size[0] * 0.96, arranger.stock.least(category)[0])
@@ -150,7 +150,7 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
             place = on_side(space, i, s + float(arranger.rng.normal(0, 0.04)), stand.size[1], back_gap(arranger.rng))
             away = abs((place.x - spot.x) * np.sin(spot.yaw) - (place.y - spot.y) * np.cos(spot.yaw))
             if 0.6 < away - model.size[1] / 2 - stand.size[1] / 2 < FARTHEST_TV and space.try_add(
-                stand, place, keep=[ahead(place, stand.size[1], 0.4, stand.size[0])]
+                stand, place, clearances=[ahead(place, stand.size[1], 0.4, stand.size[0])]
             ):
                 return True
     return False

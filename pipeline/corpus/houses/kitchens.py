@@ -62,7 +62,7 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
             continue
         s = a + at + model.size[0] / 2 if forward else b - at - model.size[0] / 2
         spot = on_side(space, i, s, model.size[1], 0.004)
-        if not space.try_add(model, spot, keep=[ahead(spot, model.size[1], free_front(category, 0.65), model.size[0])]):
+        if not space.try_add(model, spot, clearances=[ahead(spot, model.size[1], free_front(category, 0.65), model.size[0])]):
             left.append(category)
             continue
         placed.append((model, s))

@@ -256,7 +256,7 @@ def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None
         if table is not None:
             space.try_add(table, shift_spot(spot, float(rng.normal(0, 0.1)), d / 2 + table.size[1] / 2 + 0.35))
     if tv is not None:  # nobody dines between sofa and TV
-        space.keeps.append(ahead(spot, d, max(0.4, reach), min(1.4, sofa.size[0])))
+        space.clearances.append(ahead(spot, d, max(0.4, reach), min(1.4, sofa.size[0])))
     return Lounge(sofa, spot, placed)
 
 

@@ -117,8 +117,8 @@ class Space:
         self.bounds: Rect = (*(float(v) for v in room.polygon.min(axis=0)), *(float(v) for v in room.polygon.max(axis=0)))  # type: ignore[assignment]
         self.sides = sides_of(room)
         self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects([(side.x, side.y) for side in self.sides])]
-        self.keeps: list[Rect] = []
-        self.sweeps: list[Rect] = []
+        self.clearances: list[Rect] = []
+        self.swept: list[Rect] = []
         self.gaps: list[tuple[Rect, float]] = []
         self.panes: list[tuple[Rect, float]] = []
         self.doors: list[tuple[float, float]] = []
@@ -137,9 +137,9 @@ class Space:
         swings_here = opening.swing is not None and opening.swing.room_id == room_id
         narrow = min(self.bounds[2] - self.bounds[0], self.bounds[3] - self.bounds[1]) < NARROW
         step = 0.35 if narrow and opening.width > 1.0 else STEP
-        self.keeps.append(side.strip(low - 0.03, high + 0.03, 0.0, max((high - low) + 0.05, step) if swings_here else step))
+        self.clearances.append(side.strip(low - 0.03, high + 0.03, 0.0, max((high - low) + 0.05, step) if swings_here else step))
         if swings_here:
-            self.sweeps.append(self.keeps[-1])
+            self.swept.append(self.clearances[-1])
         self.doors.append(side.point((low + high) / 2, 0.36))
 
     def fits(self, box: Rect, low: float, high: float, under: Rect | None = None) -> bool:
@@ -149,9 +149,9 @@ class Space:
         """
         if any(meets(box, r) and low < z1 - EPSILON and z0 < high - EPSILON and r is not under for r, z0, z1 in self.solids):
             return False
-        if low < LOW and any(meets(box, r) for r in self.keeps):
+        if low < LOW and any(meets(box, r) for r in self.clearances):
             return False
-        if low < LEAF_TOP and any(meets(box, r) for r in self.sweeps):
+        if low < LEAF_TOP and any(meets(box, r) for r in self.swept):
             return False
         if any(low < top and meets(box, r) for r, top in self.gaps):  # nothing hangs in a doorway
             return False
@@ -169,7 +169,7 @@ class Space:
         blocked = [side.along(r) for r, z0, z1 in self.solids if low < z1 and z0 < high and meets(body, r)]
         if low < LOW:
             blocked += [side.along(r) for r, z0, _ in self.solids if z0 < LOW and meets(whole, r)]
-            blocked += [side.along(r) for r in self.keeps if meets(body, r)]
+            blocked += [side.along(r) for r in self.clearances if meets(body, r)]
         blocked += [side.along(r) for r, top in self.gaps if low < top and meets(body, r)]
         if not self.blind:
             blocked += [side.along(r) for r, sill in self.panes if high > sill + 0.05 and meets(body, r)]
@@ -182,19 +182,19 @@ class Space:
             stretches.append((at, side.length))
         return stretches
 
-    def add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = ()) -> Item:
+    def add(self, model: Model, spot: Spot, z: float = 0.0, *, clearances: Sequence[Rect] = ()) -> Item:
         """Put a piece down and keep the given rectangles free from now on."""
         item = Item(model, self.number, (spot.x, spot.y, z), wrap(spot.yaw))
         self.items.append(item)
         self.solids.append((item.rect(), z, z + model.size[2]))
-        self.keeps.extend(keep)
+        self.clearances.extend(clearances)
         return item
 
-    def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = (), under: Rect | None = None) -> bool:
+    def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, clearances: Sequence[Rect] = (), under: Rect | None = None) -> bool:
         """Put a piece down if it fits there and its free rectangles are free; a chair may reach under its table."""
-        if not self.fits(spot.box(*model.size[:2]), z, z + model.size[2], under) or not all(self.clear(r) for r in keep):
+        if not self.fits(spot.box(*model.size[:2]), z, z + model.size[2], under) or not all(self.clear(r) for r in clearances):
             return False
-        self.add(model, spot, z, keep=keep)
+        self.add(model, spot, z, clearances=clearances)
         return True
 
     def take_back(self) -> None:
@@ -204,9 +204,9 @@ class Space:
 
     def nestle(self, model: Model, spot: Spot, *, dry: bool = False) -> bool:
         """Put down a piece that may stand where others want floor for themselves, but not before a door; `dry`: only try."""
-        wanted, self.keeps = self.keeps, self.keeps[: len(self.doors)]
+        wanted, self.clearances = self.clearances, self.clearances[: len(self.doors)]
         fits = self.fits(spot.box(*model.size[:2]), 0.0, model.size[2])
-        self.keeps = wanted
+        self.clearances = wanted
         if fits and not dry:
             self.add(model, spot)
         return fits

@@ -115,7 +115,7 @@ def lay_rug(arranger: Arranger, share: float) -> None:
     rugs = [m for m in rugs if rng.random() < 0.6]  # not always the largest that fits
     tables = [k for k, i in enumerate(space.items) if i.model.category == "coffee_table"]
     floor = [(k, i.rect()) for k, i in enumerate(space.items) if i.position[2] < 0.05]
-    doors = space.keeps[: len(space.doors)]
+    doors = space.clearances[: len(space.doors)]
     places = [space.items[k].position[:2] for k in tables] + [(x, y) for x, y in arranger.middles()]
     yaw = space.items[tables[0]].yaw if tables else float(rng.choice([0.0, math.pi / 2]))
     for rug in rugs:
@@ -159,7 +159,7 @@ def hang_curtains(arranger: Arranger, share: float, openings: Sequence[Opening])
         x, y = side.point((low + high) / 2, d / 2 + 0.004)
         box = box_of(x, y, side.yaw, width, d)
         blocked = any(meets(box, r) and z0 < top and bottom < z1 for r, z0, z1 in space.solids)
-        if not blocked and not any(meets(box, r) for r in space.sweeps):
+        if not blocked and not any(meets(box, r) for r in space.swept):
             space.items.append(Item(model, space.number, (x, y, bottom), side.yaw, scale))
             space.solids.append((box, bottom, top))
 

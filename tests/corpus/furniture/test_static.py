@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.corpus.furniture import bent, texture
 from pipeline.corpus.furniture.assembly import finishes_of, shape_of
-from pipeline.corpus.furniture.catalogue import catalogue, lines, styles_of
+from pipeline.corpus.furniture.catalogue import catalogue, corpus_cards, styles_of
 from pipeline.corpus.furniture.finishes import STYLES, Finish
 from pipeline.corpus.furniture.shape import freeze, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, merge_solids, normals, pillow, topology
@@ -99,7 +99,7 @@ def chosen():
     return tuple(made)
 
 
-HERE = {c for c, line in lines().items() if not line.moving}
+HERE = {c for c, card in corpus_cards().items() if not card.moving}
 
 
 def test_there_are_enough_models_of_every_category():
@@ -112,9 +112,9 @@ def test_there_are_enough_models_of_every_category():
 
 
 def test_forms_and_styles_suit_each_other():
-    assert {s for line in lines().values() for form in line.forms.values() for s in styles_of(form)} == set(STYLES)
+    assert {s for card in corpus_cards().values() for form in card.forms.values() for s in styles_of(form)} == set(STYLES)
     for model in catalogue(1).future:
-        forms = lines()[model.category].forms
+        forms = corpus_cards()[model.category].forms
         assert model.style in styles_of(forms[model.form]) or model.form == next(iter(forms))
     assert {m.style for m in catalogue(0).future} == set(STYLES)
     assert len(STYLES) == 19
