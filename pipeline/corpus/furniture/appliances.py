@@ -11,7 +11,7 @@ from pipeline.corpus.furniture.finishes import FINISHES, Finishes, Material, one
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
 from pipeline.corpus.furniture.intervals import Interval, around, corners, edges, inset
 from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import box, circle, revolve, ring, shell, slab, stand_up, strips
+from pipeline.corpus.furniture.solids import at_height, box, circle, revolve, ring, shell, slab, stand_up, strips
 
 FRONTS = ("enamel", "steel", "graphite")
 
@@ -184,7 +184,7 @@ def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: 
     base = _cabinet(x, (face, d / 2), h, t, outside)
     square = np.array([_on_square(a, x, (0.1, panel), zc) for a in np.arange(24) * 2 * math.pi / 24])
     hole = circle(r - 0.03, 24, (0.0, zc))
-    rims = [[np.column_stack([o[:, 0], o[:, 1], np.full(24, k * t)]) for k in (0, 1)] for o in (square, hole)]
+    rims = [[at_height(o, k * t) for k in (0, 1)] for o in (square, hole)]
     base += staves("front", stand_up(shell(rims[0], rims[1]), (0, face + t, 0)), outside, "tub", 6)  # a hand meets four walls within
     base += pieces("kick", box(x, (face + 0.01, face + 0.03), (0.012, 0.1)), outside)
     drum = ring((r - 0.025, r - 0.025), (r - 0.035, r - 0.035), (-d / 2 + 0.1, -face - t - 0.002), 24)

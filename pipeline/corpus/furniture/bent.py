@@ -9,8 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.corpus.furniture.finishes import PROFILES
 from pipeline.corpus.furniture.intervals import Interval, Spot
-from pipeline.corpus.furniture.solids import Face, Solid, Vector, slab, stack
+from pipeline.corpus.furniture.solids import Face, Solid, Vector, at_height, revolve, slab, stack
 
 Points = NDArray[np.float64]
 
@@ -85,7 +86,7 @@ def band(path: Points, thick: float, z: Interval, *, closed: bool = False) -> li
     for i in range(len(path) if closed else len(path) - 1):
         j = (i + 1) % len(path)
         ring = np.array([right[i], right[j], left[j], left[i]])
-        staves.append(stack([np.column_stack([ring, np.full(4, z[0])]), np.column_stack([ring, np.full(4, z[1])])]))
+        staves.append(stack([at_height(ring, height) for height in z]))
     return staves
 
 
@@ -96,7 +97,7 @@ def wall(path: Points, thick: float, low: float, tops: Sequence[float] | Points,
     for i in range(len(path) - 1):
         ring = np.array([right[i], right[i + 1], left[i + 1], left[i]])
         z = np.array([tops[i], tops[i + 1], tops[i + 1], tops[i]])
-        rings = [np.column_stack([ring, np.full(4, low)]), np.column_stack([ring, z - ease])]
+        rings = [at_height(ring, low), np.column_stack([ring, z - ease])]
         if ease > 0:
             centre = np.array([path[i], path[i + 1], path[i + 1], path[i]])
             rings.append(np.column_stack([centre + (ring - centre) * 0.72, z - 0.3 * ease]))
@@ -192,6 +193,11 @@ def blades(roots: Points, tips: Points, width: Points | float, *, belly: float =
     middle = roots + axis * belly
     points = np.stack([*ring, middle + up * thick / 2, middle - up * thick / 2], axis=1)
     return [Solid(p, faces) for p in points]
+
+
+def lathe(profile: str, radius: float, height: float, n: int = 20, centre: Spot = (0.0, 0.0), squash: float = 1.0) -> list[Solid]:
+    """Return what is turned by a profile of manifests/furniture.yaml, whose numbers are shares of `radius` and `height` [m]."""
+    return revolve([(r * radius, z * height) for r, z in PROFILES[profile]], n, centre, squash)
 
 
 def turns(count: int, start: float = 0.0) -> list[float]:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import curve, tube, turns
+from pipeline.corpus.furniture.bent import curve, lathe, tube, turns
 from pipeline.corpus.furniture.finishes import Finishes, pick
 from pipeline.corpus.furniture.intervals import around, polar
 from pipeline.corpus.furniture.lamps import bulb, cord, rose, shade, shade_word, turn_along_y
@@ -78,8 +78,7 @@ def _chandelier(rng: np.random.Generator, w: float, d: float, h: float, finishes
     """Arms that swing out and up from a turned stem, each with a small shade or a candle, drops of glass below."""
     metal = finishes.handle
     r, body = w / 2, min(0.62 * h, 0.8 * w)
-    steps = [(0.012, 0.0), (0.05, 0.06), (0.02, 0.14), (0.055, 0.24), (0.02, 0.36), (0.03, 0.6), (0.012, 0.8), (0.02, 0.95), (0.006, 1.0)]
-    parts = pieces("stem", revolve([(a * min(1.0, w / 0.6), b * body) for a, b in steps], 14), metal)
+    parts = pieces("stem", lathe("chandelier_stem", min(1.0, w / 0.6), body, 14), metal)
     crystal = finishes.style.ornament > 0.75 or finishes.style_name == "Light Luxury"
     z = 0.42 * body
     for a in turns(6 if w > 0.55 else 5, 0.2):

@@ -14,7 +14,7 @@ from pipeline.corpus.furniture.fronts import FrontStyle, Rect, lid, panel, reach
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, group_pieces, join_shapes, pieces, staves
 from pipeline.corpus.furniture.solids import (
-    Solid,
+    at_height,
     box,
     circle,
     cushion,
@@ -149,28 +149,27 @@ def vanity(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     if vessel:
         r, middle = min(0.36 * (d - 0.1), 0.19), (face + d / 2 - 0.11) / 2
         basin = _vessel(min(r * 1.2, 0.4 * w), r, (0.0, middle), (body, body + 0.12))
-        parts = staves("basin", basin[1:], "ceramic") + pieces("basin_floor", basin[0], "ceramic")
-        return join_shapes(shape, Shape(parts), tap(d / 2 - 0.045, body, h - body, 0.13, finishes.handle))
+        return join_shapes(shape, Shape(basin), tap(d / 2 - 0.045, body, h - body, 0.13, finishes.handle))
     hole = around(min(0.26, 0.5 * w - 0.07)), (face + 0.06, d / 2 - 0.11)
     shape = _sink_into_top(shape, *hole, bowl(*hole, body - 0.002, 0.13, "ceramic"))
     return join_shapes(shape, tap(d / 2 - 0.055, body, h - body, 0.13, finishes.handle))
 
 
-def _vessel(rx: float, ry: float, centre: Spot, z: Interval) -> list[Solid]:
+def _vessel(rx: float, ry: float, centre: Spot, z: Interval) -> Pieces:
     """Return an oval open basin that stands on a counter, its wall flaring upwards."""
 
     def oval(scale: float, height: float) -> NDArray[np.float64]:
-        return np.column_stack([circle(rx * scale, 24, centre, ry / rx), np.full(24, height)])
+        return at_height(circle(rx * scale, 24, centre, ry / rx), height)
 
     low = z[0] + 0.012
     wall = shell([oval(0.72, low), oval(1.0, z[1])], [oval(0.66, low), oval(0.94, z[1])])
-    return [stack([oval(0.70, z[0]), oval(0.72, low)]), *wall]
+    return staves("basin", wall, "ceramic") + pieces("basin_floor", stack([oval(0.70, z[0]), oval(0.72, low)]), "ceramic")
 
 
 def _oval(rx: float, y: Interval, z: float) -> NDArray[np.float64]:
     """Return an ellipse (24, 3) that spans +-rx and the interval `y` at height `z`."""
     ry = (y[1] - y[0]) / 2
-    return np.column_stack([circle(rx, 24, (0.0, (y[0] + y[1]) / 2), ry / rx), np.full(24, z)])
+    return at_height(circle(rx, 24, (0.0, (y[0] + y[1]) / 2), ry / rx), z)
 
 
 def toilet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -190,7 +189,7 @@ def toilet(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     wall = shell(outer, [oval(k, k, z) for k, z in ((0.42, 0.62 * rim), (0.76, rim))])
     heel, shelf = (around(0.27 * w), (cy + 0.3 * ry, d / 2 - 0.06)), (around(0.36 * w), (bowl_y[1] - 0.05, d / 2 - 0.012))
     outlines = [(heel, 0.0), (shelf, 0.8 * rim), (shelf, rim)]
-    bridge = hull(np.concatenate([np.column_stack([rounded_rectangle(*spans, 0.04), np.full(20, z)]) for spans, z in outlines]))
+    bridge = hull(np.concatenate([at_height(rounded_rectangle(*spans, 0.04), z) for spans, z in outlines]))
     half = (0.44 if form == "lever" else 0.5) * w  # a lever stands out of the tank's side
     base = pieces("bowl", [foot, neck], "ceramic") + staves("bowl", wall, "ceramic") + pieces("bridge", bridge, "ceramic")
     base += pieces("tank", cushion((-half, half), tank_y, (rim, h - 0.03), 0.025), "ceramic")
@@ -247,11 +246,7 @@ def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
     outer = _along(u, a, b, 2.6) if form == "free" else u / np.maximum(np.abs(u[:, :1]) / a, np.abs(u[:, 1:]) / b)
     inner = _along(u, a - 0.07, b - 0.07, 3.0)
     foot = 0.82 * outer if form == "free" else outer
-
-    def at(outline: NDArray[np.float64], z: float) -> NDArray[np.float64]:
-        return np.column_stack([outline, np.full(len(outline), z)])
-
-    wall = shell([at(foot, low), at(outer, rim)], [at(0.8 * inner, low), at(inner, rim)])
+    wall = shell([at_height(foot, low), at_height(outer, rim)], [at_height(0.8 * inner, low), at_height(inner, rim)])
     floor = box((-a, a), (-b, b), (0.0, low)) if form == "apron" else slab(foot, (0.0, low))
     base = pieces("tub", [*wall, floor], "ceramic")
     if form == "apron":

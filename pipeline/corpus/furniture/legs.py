@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.bent import curve, tube, turns
+from pipeline.corpus.furniture.bent import curve, lathe, tube, turns
 from pipeline.corpus.furniture.finishes import PROFILES, Finish, Finishes, one_of
 from pipeline.corpus.furniture.intervals import Spot, around, between, inset, polar, split
 from pipeline.corpus.furniture.solids import Solid, beam, box, revolve, rod, stack
@@ -74,7 +74,7 @@ def leg(kind: str, at: Spot, out: Spot, height: float, thick: float) -> list[Sol
 
 def _turned_leg(x: float, y: float, h: float, t: float) -> list[Solid]:
     block = box(around(0.52 * t, x), around(0.52 * t, y), (0.84 * h, h), 0.002)
-    return [*revolve([(r * t, z * h) for r, z in PROFILES["turned_leg"]], 12, (x, y)), block]
+    return [*lathe("turned_leg", t, h, 12, (x, y)), block]
 
 
 def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
@@ -148,19 +148,16 @@ def _frame(kind: str, x: float, y: float, h: float, t: float) -> list[Solid]:
 
 def pedestal(rng: np.random.Generator, finishes: Finishes, radius: float, height: float) -> list[Solid]:
     """Return a foot and a column for a round top: a trumpet, a disc with a tube, a drum, a turned column on three feet."""
-    classic = finishes.style.ornament > 0.5
-    kind = int(rng.integers(2, 4)) if classic else int(rng.integers(3))
+    kind = int(rng.integers(2, 4) if finishes.style.ornament > 0.5 else rng.integers(3))
     r, h = radius, height
     if kind == 0:
-        steps = ((1.0, 0.0), (1.0, 0.012), (0.62, 0.035), (0.36, 0.1), (0.2, 0.24), (0.14, 0.45), (0.14, 0.7), (0.22, 0.88), (0.42, 1.0))
-        return revolve([(a * r, b * h) for a, b in steps], 24)
+        return lathe("trumpet_foot", r, h, 24)
     if kind == 1:
         stem, plate = 0.05 + 0.05 * r, 0.6 * r
         return revolve([(r, 0.0), (r, 0.012), (0.94 * r, 0.02), (stem, 0.022), (stem, h - 0.012), (plate, h - 0.01), (plate, h)], 24)
     if kind == 2:
         return revolve([(0.62 * r, 0.0), (0.62 * r, 0.03), (0.5 * r, 0.05), (0.42 * r, 0.5 * h), (0.5 * r, 0.94 * h), (0.62 * r, h)], 20)
-    column = [(0.17, 0.2), (0.24, 0.26), (0.24, 0.3), (0.14, 0.36), (0.26, 0.52), (0.28, 0.6), (0.14, 0.8), (0.24, 0.92), (0.44, 1.0)]
-    solids = revolve([(a * r, b * h) for a, b in column], 16)
+    solids = lathe("turned_column", r, h, 16)
     foot = ((0.23 * r, 0.27 * h), (0.5 * r, 0.24 * h), (0.8 * r, 0.06 * h), (r, 0.025))
     for a in turns(3, math.pi / 2):
         path = curve([polar(out, a, z) for out, z in foot], 2)

@@ -5,21 +5,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import arc, curve, lean, prism, sheet, tube, turns, wall
+from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, prism, sheet, tube, turns, wall
 from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Finishes, Material, cane, one_of
 from pipeline.corpus.furniture.intervals import around, between, corners, polar, split
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, board, box, circle, cushion, revolve, rod, slab, stand_up
+from pipeline.corpus.furniture.solids import Solid, at_height, beam, board, box, circle, cushion, revolve, rod, slab, stand_up
 from pipeline.corpus.furniture.textiles import piping, seat_cushion, tufted_panel, upright_pad
 
 TUBE = 0.011  # radius of bent steel
 # Backs of nothing but rails: shares of the height from and to which each reaches, and how deep it is in thicknesses of the posts.
-RAILS = {
-    "ladder": [(a, a + 0.11, 0.55) for a in (0.14, 0.38, 0.62)],
-    "panel": [(0.28, 0.8, 0.5)],
-    "cane": [(0.2, 0.3, 0.8)],
-}
+RAILS = {"ladder": [(a, a + 0.11, 0.55) for a in (0.14, 0.38, 0.62)], "panel": [(0.28, 0.8, 0.5)], "cane": [(0.2, 0.3, 0.8)]}
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,7 +292,7 @@ def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
         r, z = min(w, d), 0.32 * seat
         column = [(0.46 * r, 0.0), (0.46 * r, 0.012), (0.05, 0.035), (0.028, 0.05), (0.026, top - 0.012), (0.11, top - 0.01), (0.11, top)]
         hoop = arc((0.0, 0.0), 0.3 * r, 0, 2 * math.pi, 14)[:-1]
-        rest = tube(np.column_stack([hoop, np.full(14, z)]), 0.009, 6, closed=True)
+        rest = tube(at_height(hoop, z), 0.009, 6, closed=True)
         rest += [rod(polar(0.028, a, z), polar(0.3 * r - 0.009, a, z), 0.007, n=6) for a in turns(3, math.pi / 2)]
         parts = pieces("column", revolve(column, 24), metal) + pieces("foot_rest", rest, metal)
     else:
@@ -322,13 +318,11 @@ def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
     """Build a bed-end bench, an ottoman, a stool on legs, a round pouf, or a ceramic drum."""
     x, y = w / 2, d / 2
     if form == "drum":
-        profile = [(0.62, 0.0), (0.7, 0.06), (0.92, 0.26), (1.0, 0.5), (0.92, 0.74), (0.7, 0.94), (0.62, 1.0)]
         glazed = Finish("glaze", finishes.soft.color, 0.2, density=900)
-        return Shape(pieces("drum", revolve([(a * x, b * h) for a, b in profile], 24, squash=d / w), glazed))
+        return Shape(pieces("drum", lathe("drum_stool", x, h, 24, squash=d / w), glazed))
     if form == "pouf":
-        profile = [(0.6, 0.0), (0.86, 0.06), (0.97, 0.22), (1.0, 0.5), (0.97, 0.78), (0.86, 0.94), (0.5, 1.0)]
         wool = Finish("knit", finishes.soft.color, 0.95, pattern="knit", density=80)
-        return Shape(pieces("pouf", revolve([(a * x, b * h) for a, b in profile], 28, squash=d / w), wool))
+        return Shape(pieces("pouf", lathe("pouf", x, h, 28, squash=d / w), wool))
     cord = piping(rng, finishes)
     if form == "ottoman":
         low = 0.66 * h

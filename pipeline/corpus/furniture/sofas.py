@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import arc, curve, lean, sheet, tube, turns, upright, wall
+from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, sheet, tube, turns, upright, wall
 from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of, shade
 from pipeline.corpus.furniture.intervals import Interval, around, between, corners, edges, inset, polar, split
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, box, cushion, revolve, rod, slab, stack
+from pipeline.corpus.furniture.solids import Solid, at_height, beam, box, cushion, revolve, rod, slab, stack
 from pipeline.corpus.furniture.textiles import bolster, channels, piping, seat_cushion, throw_pillow, tufted_panel, upright_pad
 
 ARMS = {"track": 0.13, "legs": 0.09, "roll": 0.2, "chesterfield": 0.2, "camelback": 0.17, "cloud": 0.22, "u_shape": 0.15}
@@ -139,7 +139,7 @@ def _tub(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finis
     edge = np.concatenate([inner, [(-end, -y + 0.03), (-end + 0.03, -y), (end - 0.03, -y), (end, -y + 0.03)]])
     centre = edge.mean(axis=0)
     levels = ((0.98, low), (1.0, low + 0.02), (1.0, seat - 0.05), (0.975, seat - 0.02), (0.88, seat), (0.5, seat + 0.02))
-    rings = [np.column_stack([centre + (edge - centre) * f, np.full(len(edge), z)]) for f, z in levels]
+    rings = [at_height(centre + (edge - centre) * f, z) for f, z in levels]
     return parts + pieces("seat", stack(rings), finishes.soft if rng.random() < 0.7 else finishes.second)
 
 
@@ -152,7 +152,7 @@ def _rattan(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fi
     height = np.interp(np.abs(np.linspace(-1, 1, 13)), [0, 0.5, 1], [h - r, h - 0.25 * (h - seat), seat + 0.2])
     ring = [np.array([math.cos(a) * (x - 0.045), math.sin(a) * (y - r)]) for a in turns(16)]
     parts = pieces("hoop", tube(np.column_stack([bow, height]), r, 8), pole)
-    parts += pieces("seat_ring", tube(np.column_stack([ring, np.full(16, seat - 0.06)]), r, 8, closed=True), pole)
+    parts += pieces("seat_ring", tube(at_height(np.array(ring), seat - 0.06), r, 8, closed=True), pole)
     parts += pieces("weave", wall(bow * 0.985, 0.012, seat - 0.04, height - r), weave)
     parts += pieces("seat_weave", slab(np.array(ring) * 0.93, (seat - 0.066, seat - 0.05)), weave)
     feet = [rod((s * 0.8 * x, t * 0.78 * y, 0), (s * 0.66 * x, t * 0.62 * y, seat - 0.066), 0.015, n=8) for s, t in corners(1, 1)]
@@ -354,9 +354,7 @@ def lazy_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float,
     """Build a bean bag in the shape of a drop, or a soft block seat with a rolled back."""
     x, y = w / 2, d / 2
     if form == "bean":
-        steps = ((0.78, 0.0), (0.92, 0.08), (0.99, 0.2), (1.0, 0.32), (0.94, 0.5), (0.78, 0.7), (0.55, 0.87), (0.3, 0.97), (0.14, 1.0))
-        drop = [q.scale(np.array([1.0, y / x, 1.0])) for q in revolve([(a * x, b * h) for a, b in steps], 26)]
-        return Shape(pieces("bag", lean(drop, 0.0, 0.22), finishes.soft))
+        return Shape(pieces("bag", lean(lathe("bean_bag", x, h, 26, squash=y / x), 0.0, 0.22), finishes.soft))
     seat = min(0.38, 0.52 * h)
     parts = pieces("body", cushion((-x, x), (-y, y), (0, seat), 0.11, 4, 0.03), finishes.soft)
     parts += pieces("back", cushion((-x, x), (y - 0.3 * d, y), (seat - 0.012, h), 0.12, 4), finishes.soft)

@@ -148,10 +148,10 @@ def box(x: Interval, y: Interval, z: Interval, bevel: float = 0.0) -> Solid:
     bevel = min(bevel, 0.3 * min(x[1] - x[0], y[1] - y[0], z[1] - z[0]))
     if bevel <= 0:
         ring = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
-        return stack([_at(ring, z[0]), _at(ring, z[1])])
+        return stack([at_height(ring, z[0]), at_height(ring, z[1])])
     rings = []
     for height, inset in ((z[0], 1), (z[0] + bevel, 0), (z[1] - bevel, 0), (z[1], 1)):
-        rings.append(_at(_octagon(x, y, bevel, inset * bevel), height))
+        rings.append(at_height(_octagon(x, y, bevel, inset * bevel), height))
     return stack(rings)
 
 
@@ -216,7 +216,7 @@ def pillow(x: Interval, y: Interval, z: Interval, steps: int = 2) -> Solid:
     centre, middle, half = np.array([(x[0] + x[1]) / 2, (y[0] + y[1]) / 2]), (z[0] + z[1]) / 2, (z[1] - z[0]) / 2
     rings = []
     for height, scale in ((-1, 0.34), (-0.82, 0.66), (-0.45, 0.88), (0, 1), (0.45, 0.88), (0.82, 0.66), (1, 0.34)):
-        rings.append(_at(centre + (outline - centre) * scale, middle + half * height))
+        rings.append(at_height(centre + (outline - centre) * scale, middle + half * height))
     return stack(rings)
 
 
@@ -226,8 +226,8 @@ def slab(outline: NDArray[np.float64], z: Interval, bevel: float = 0.0) -> Solid
     reach = float(np.abs(outline - centre).max())
     inner = centre + (outline - centre) * (1 - bevel / reach)
     if bevel <= 0:
-        return stack([_at(outline, z[0]), _at(outline, z[1])])
-    return stack([_at(inner, z[0]), _at(outline, z[0] + bevel), _at(outline, z[1] - bevel), _at(inner, z[1])])
+        return stack([at_height(outline, z[0]), at_height(outline, z[1])])
+    return stack([at_height(inner, z[0]), at_height(outline, z[0] + bevel), at_height(outline, z[1] - bevel), at_height(inner, z[1])])
 
 
 def board(x: Interval, y: Interval, z: Interval, radius: float, steps: int, bevel: float = 0.0) -> Solid:
@@ -286,7 +286,7 @@ def revolve(profile: Sequence[Interval], n: int = 20, centre: Interval = (0.0, 0
             runs[-1].append(point)
         else:
             runs.append([runs[-1][-1], point])
-    solids = [stack([_at(circle(max(r, 1e-3), n, centre), z) for r, z in run]) for run in runs]
+    solids = [stack([at_height(circle(max(r, 1e-3), n, centre), z) for r, z in run]) for run in runs]
     return solids if squash == 1 else [s.scale(np.array([1.0, squash, 1.0])) for s in solids]
 
 
@@ -304,7 +304,7 @@ def shell(outer: Sequence[NDArray[np.float64]], inner: Sequence[NDArray[np.float
 
 def ring(outer: Interval, inner: Interval, z: Interval, n: int = 16, centre: Interval = (0.0, 0.0), squash: float = 1.0) -> list[Solid]:
     """Return a round wall with radii (at the bottom, at the top) `outer` and `inner`, as n staves; `squash` scales y."""
-    rims = [[_at(circle(r[k], n, centre, squash), z[k]) for k in (0, 1)] for r in (outer, inner)]
+    rims = [[at_height(circle(r[k], n, centre, squash), z[k]) for k in (0, 1)] for r in (outer, inner)]
     return shell(rims[0], rims[1])
 
 
@@ -320,5 +320,6 @@ def hull(points: NDArray[np.float64]) -> Solid:
     return Solid(kept, tuple(map(tuple, corners.tolist())))
 
 
-def _at(outline: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+def at_height(outline: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+    """Return an outline (n, 2) as points (n, 3) at one height [m]."""
     return np.concatenate([outline, np.full((len(outline), 1), height)], axis=1)

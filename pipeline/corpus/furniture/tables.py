@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.bent import arc, band, prism, turns
+from pipeline.corpus.furniture.bent import arc, band, lathe, prism, turns
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case, grid
 from pipeline.corpus.furniture.finishes import Finish, Finishes, cane
 from pipeline.corpus.furniture.fronts import Rect, frame
@@ -81,7 +81,7 @@ def dining_table(rng: np.random.Generator, form: str, w: float, d: float, h: flo
         parts = pieces("top", top(circle(w / 2, 36), (under, h), finishes), material)
         if form == "drum":
             return Shape(parts + fluted_drum(0.3 * w, under, finishes))
-        return Shape(parts + pieces("pedestal", trumpet(0.32 * w, under), finishes.front))
+        return Shape(parts + pieces("pedestal", lathe("trumpet", 0.32 * w, under, 24), finishes.front))
     parts = pieces("top", top(outline(rng, finishes, w, d), (under, h), finishes), material)
     if form == "bar":
         return Shape(parts + _bar(w, d, h, t, finishes))
@@ -97,13 +97,6 @@ def dining_table(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     solids = [box(around(half, s * x), around(0.4 * d), (0, under), 0.006) for s in (-1, 1)]
     solids.append(box(around(x - half), (-0.016, 0.016), (0.55 * h, under), 0.003))
     return Shape(parts + pieces("slabs", solids, finishes.body))
-
-
-def trumpet(radius: float, height: float) -> list[Solid]:
-    """Return a foot like an upturned trumpet: a thin disc that rises in one sweep into a slender stem."""
-    disc = ((1.0, 0.0), (1.0, 0.008), (0.8, 0.02), (0.55, 0.045), (0.34, 0.1), (0.2, 0.22))
-    stem = ((0.15, 0.42), (0.15, 0.66), (0.2, 0.82), (0.36, 0.95), (0.5, 1.0))
-    return revolve([(a * radius, b * height) for a, b in (*disc, *stem)], 24)
 
 
 def fluted_drum(radius: float, height: float, finishes: Finishes) -> Pieces:
@@ -182,7 +175,7 @@ def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: 
     else:
         parts = pieces("top", top(circle(w / 2, 32), (under, h), finishes), material)
     if form == "tulip":
-        return Shape(parts + pieces("foot", trumpet(0.34 * w, under), finishes.front))
+        return Shape(parts + pieces("foot", lathe("trumpet", 0.34 * w, under, 24), finishes.front))
     angles = turns(3, -math.pi / 2)
     solids = [rod(polar(0.44 * w, a, 0), polar(0.2 * w, a, under - 0.012), 0.011, 0.018, 10) for a in angles]
     solids.append(slab(circle(0.27 * w, 24), (under - 0.012, under), 0.002))

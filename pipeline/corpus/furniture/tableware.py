@@ -10,7 +10,7 @@ from pipeline.corpus.furniture.finishes import COLORS, FINISHES, PROFILES, Finis
 from pipeline.corpus.furniture.fronts import Rect, lid
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, polar
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab, stack, walls
+from pipeline.corpus.furniture.solids import Solid, at_height, box, circle, revolve, ring, slab, stack, walls
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
 BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue", "barn_red", "emerald", "greige", "blush", "black")
@@ -200,7 +200,7 @@ def trash_can(rng: np.random.Generator, form: str, w: float, d: float, h: float,
         return _swing_bin(x, y, h, finish, cover_finish)
     base = pieces("body", tray_walls(x, y, (0.0, top), 0.009, 0.002), finish)
     corners = np.array([(-w / 2, -d / 2), (w / 2, -d / 2), (w / 2, d / 2), (-w / 2, d / 2)])
-    low = np.column_stack([corners, np.full(4, top + 0.003)])
+    low = at_height(corners, top + 0.003)
     shrink = 0.9 if form == "box" else 0.97
     rise = np.array([0, 0, h - top - 0.003])
     cover = pieces("lid", stack([low, low + np.array([0, 0, 0.012]), low * np.array([shrink, shrink, 1]) + rise]), cover_finish)

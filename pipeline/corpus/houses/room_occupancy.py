@@ -212,15 +212,7 @@ class Space:
         return fits
 
 
-def against(
-    rng: np.random.Generator,
-    space: Space,
-    model: Model,
-    *,
-    front: float,
-    corner: float = 0.5,
-    low: float = 0.0,
-) -> Spot | None:
+def against(rng: np.random.Generator, space: Space, model: Model, *, front: float, corner: float = 0.5, low: float = 0.0) -> Spot | None:
     """Return a place with the back to a wall, `front` metres free before it; with chance `corner` at a stretch's end."""
     w, d, h = model.size
     gap = back_gap(rng)
