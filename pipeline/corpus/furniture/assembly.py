@@ -22,9 +22,8 @@ def builder(category: str) -> Builder:
     try:
         function: Builder = getattr(importlib.import_module(f"{__package__}.{module}"), name)
     except (ImportError, AttributeError):
-        raise ContentError(
-            f"manifests/categories/{category}.yaml: no builder {module}.{name}", "name a function of pipeline/corpus/furniture"
-        ) from None
+        where = f"manifests/categories/{category}.yaml"
+        raise ContentError(f"{where}: no builder {module}.{name}", "name a function of pipeline/corpus/furniture") from None
     return function
 
 

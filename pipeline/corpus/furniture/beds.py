@@ -72,10 +72,8 @@ def bedding(rng: np.random.Generator, x: Interval, y: Interval, low: float, top:
         pad = pillow(around(half, middle), (my[1] - deep - 0.02, my[1] - 0.02), (top, top + 0.15), 3)
         pads.append(pad.rotate("x", 0.22, (0, my[1] - deep, top)).translate((0, 0.0, 0.012)))
         if room > 0.3 and rng.random() < 0.5 * finishes.style.tufts + 0.35:
-            front = throw_pillow(
-                (middle, my[1] - deep - 0.13, top + 1.5 * thick + 0.002), min(0.4, 1.5 * half, deep), 0.5, float(rng.uniform(-0.15, 0.15))
-            )
-            parts += pieces("cushion", front, finishes.soft)
+            at, yaw = (middle, my[1] - deep - 0.13, top + 1.5 * thick + 0.002), float(rng.uniform(-0.15, 0.15))
+            parts += pieces("cushion", throw_pillow(at, min(0.4, 1.5 * half, deep), 0.5, yaw), finishes.soft)
     parts += pieces("pillows", pads, "bedding")
     if rng.random() < 0.55:
         foot = my[0] + 0.14 * long

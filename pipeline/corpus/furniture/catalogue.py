@@ -163,7 +163,7 @@ def _models(seed: int, category: str, card: Corpus, count: int, *, articulated: 
     boxes = draw_sizes(rng, cards()[category].size, count, [form.round for form in forms])
     _raise(forms, boxes)
     models = []
-    for wanted, look, box in zip(names, styles, boxes, strict=True):
+    for wanted, style_name, box in zip(names, styles, boxes, strict=True):
         w, d, h = (round(float(x), 3) for x in box)
         name = wanted if h >= card.forms[wanted].least_height else next(iter(card.forms))
         form = card.forms[name]
@@ -172,7 +172,7 @@ def _models(seed: int, category: str, card: Corpus, count: int, *, articulated: 
                 model_id=str(uuid.UUID(bytes=rng.bytes(16), version=4)),
                 category=category,
                 size=(w, w if form.round else d, w if form.upright else h),
-                style=look,
+                style=style_name,
                 form=name,
                 future_name=form.name or card.name,
                 super_category=SUPER_CATEGORIES.get(entry.super, "Others"),

@@ -75,12 +75,10 @@ def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
         spots = (("power", 1.0, 0.16, 0.06), ("louder", -1.0, 0.22, 0.05), ("softer", -1.0, 0.08, 0.05))
         movers = []
         for name, s, at, half in spots:
-            edge = sorted((s * (side + 0.0006), s * (side + 0.0014)))
-            cap = box((edge[0], edge[1]), ((at - half) * d, (at + half) * d), (0.4 * h, 0.7 * h))
+            x = between(s * (side + 0.0006), s * (side + 0.0014))
+            cap = pieces("button", box(x, ((at - half) * d, (at + half) * d), (0.4 * h, 0.7 * h)), finish)
             middle = (s * (side + 0.001), at * d, 0.55 * h)
-            movers.append(
-                Mover(name, pieces("button", cap, finish), "prismatic", (-s, 0, 0), middle, 0.0005, "slider_button", "button", (s, 0, 0))
-            )
+            movers.append(Mover(name, cap, "prismatic", (-s, 0, 0), middle, 0.0005, "slider_button", "button", (s, 0, 0)))
         return Shape(base, tuple(movers))
     flips = form == "flip"
     top = 0.5 * h - 0.0028 if flips else h - 0.003
@@ -89,11 +87,9 @@ def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
         base += pieces("display", box(around(0.4 * w), (0.1 * d, 0.44 * d), (top, top + 0.0006)), "dark_glass", group="body")
     reach = (-0.45 * d, 0.04 * d if not flips else 0.4 * d)
     pitch_x, pitch_y = 0.84 * w / 3, (reach[1] - reach[0]) / 4
-    keys = "plastic_white" if finish != "silver" else "plastic"
-    movers = [
-        _key(f"key_{k}", (k % 3 - 1) * pitch_x, reach[1] - (k // 3 + 0.5) * pitch_y, 0.4 * pitch_x, 0.34 * pitch_y, top, keys, 0.0024)
-        for k in range(12)
-    ]
+    keys, key_half = "plastic_white" if finish != "silver" else "plastic", (0.4 * pitch_x, 0.34 * pitch_y)
+    places = [((k % 3 - 1) * pitch_x, reach[1] - (k // 3 + 0.5) * pitch_y) for k in range(12)]
+    movers = [_key(f"key_{k}", *place, *key_half, top, keys, 0.0024) for k, place in enumerate(places)]
     if not flips:
         return Shape(base, tuple(movers))
     low = top + 0.0036
@@ -180,13 +176,12 @@ def printer(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
     for k in range(4 if form == "scanner" else 2):
         bx = 0.15 * w + 0.07 * w * k
         movers.append(button(f"button_{k}", (bx, bx + 0.045 * w), panel_z, plane, "plastic_white" if finish != "pale" else "plastic"))
-    solids: Pieces = pieces(
-        "cover", box(x, (y[0], y[1] - 0.002), (top + 0.003, h - 0.5 * cover if form == "scanner" else h), 0.003), finish, group="cover"
-    )
+    z = (top + 0.003, h - 0.5 * cover if form == "scanner" else h)
+    solids = pieces("cover", box(x, (y[0], y[1] - 0.002), z, 0.003), finish, group="cover")
     if form == "scanner":
         feeder = box(around(0.42 * w), (y[0] + 0.1 * d, y[1] - 0.02), (h - 0.5 * cover, h), 0.006)
         solids += pieces("feeder", feeder, trim, group="cover")
-    movers.append(lid("cover", solids, (0.0, y[1] - 0.002, top + 0.003), math.radians(70)))
+    movers.append(lid("cover", solids, (0.0, y[1] - 0.002, z[0]), math.radians(70)))
     return Shape(base, tuple(movers))
 
 

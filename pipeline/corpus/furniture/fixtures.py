@@ -264,9 +264,8 @@ def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     basin = [box(x, y, (0, tray - 0.02), 0.003), *walls(x, y, (tray - 0.02, tray), 0.04)]
     side = -1 if rng.random() < 0.5 else 1
     pane = side * (w / 2 - 0.012)
-    base = pieces("tray", basin, "ceramic") + pieces(
-        "glass_side", box(around(0.004, pane), (y[0] + 0.012, y[1] - 0.002), (tray, h)), "glass"
-    )
+    base = pieces("tray", basin, "ceramic")
+    base += pieces("glass_side", box(around(0.004, pane), (y[0] + 0.012, y[1] - 0.002), (tray, h)), "glass")
     end = side * (w / 2 - 0.02 - 0.42 * w)
     base += pieces("glass_front", box(between(side * (w / 2 - 0.018), end), (y[0] + 0.008, y[0] + 0.016), (tray, h)), "glass")
     posts = [box(around(0.01, px), (y[0] + 0.002, y[0] + 0.022), (tray, h), 0.002) for px in (end, pane)]
@@ -291,16 +290,12 @@ def room_door(rng: np.random.Generator, form: str, w: float, d: float, h: float,
     stops = [box(span, behind, (0, h - t)) for span in edges(inner, stop)]
     base += pieces("stops", [*stops, box(inset(inner, stop), behind, (h - t - stop, h - t))], finish)
     rect = Rect(inset(inner, 0.003), (0.006, h - t - 0.003), y[0])
-    hinge_left = rng.random() < 0.5
-    side = 1.0 if hinge_left else -1.0
-    style = FrontStyle("slab", "none", finish, finishes.handle, LEAF)
-    pivot = rect.x[0] if hinge_left else rect.x[1]
-    leaf = Mover(
-        "leaf", _leaf(rng, form, rect, style), "revolute", (0, 0, -side), (pivot, rect.y, 1.0), math.radians(100), "hinge_door", "door"
-    )
-    grip = (rect.x[1] - 0.065 if hinge_left else rect.x[0] + 0.065, 1.02)
-    levers = [_door_lever("lever_front", (grip[0], rect.y, grip[1]), -1.0, side, finishes.handle)]
-    levers.append(_door_lever("lever_back", (grip[0], rect.y + LEAF, grip[1]), 1.0, side, finishes.handle))
+    side = 1.0 if rng.random() < 0.5 else -1.0  # of the hinge: 1 at the left
+    pivot, grip = (rect.x[0], rect.x[1] - 0.065) if side > 0 else (rect.x[1], rect.x[0] + 0.065)
+    parts, at = _leaf(rng, form, rect, FrontStyle("slab", "none", finish, finishes.handle, LEAF)), (pivot, rect.y, 1.0)
+    leaf = Mover("leaf", parts, "revolute", (0, 0, -side), at, math.radians(100), "hinge_door", "door")
+    levers = [_door_lever("lever_front", (grip, rect.y, 1.02), -1.0, side, finishes.handle)]
+    levers.append(_door_lever("lever_back", (grip, rect.y + LEAF, 1.02), 1.0, side, finishes.handle))
     return Shape(base, (leaf, *levers))
 
 

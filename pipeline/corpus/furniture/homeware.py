@@ -72,11 +72,10 @@ def clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
         return Shape(parts + pieces("rim", stand_up(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), at), rim))
     hub = stand_up(revolve([(0.2 * r, 0.0), (0.2 * r, 0.7 * d), (0.12 * r, d)], 20), at)
     hoop = stand_up(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), at)
-    y, bar_y = (back - 0.8 * d, back - 0.4 * d), (back - 0.6 * d, back - 0.45 * d)
-    marks = [box(around(0.02 * r), y, (0.74 * r, r)).rotate("y", a).translate((0, 0, h / 2)) for a in turns(12)]
-    hands = [
-        box(around(0.015 * r), bar_y, (0.2 * r, q * r)).rotate("y", a).translate((0, 0, h / 2)) for q, a in ((0.5, 1.05), (0.72, -1.05))
-    ]
+    mark = box(around(0.02 * r), (back - 0.8 * d, back - 0.4 * d), (0.74 * r, r))
+    marks = [mark.rotate("y", a).translate((0, 0, h / 2)) for a in turns(12)]
+    bars = [(box(around(0.015 * r), (back - 0.6 * d, back - 0.45 * d), (0.2 * r, q * r)), a) for q, a in ((0.5, 1.05), (0.72, -1.05))]
+    hands = [bar.rotate("y", a).translate((0, 0, h / 2)) for bar, a in bars]
     spokes = [(_upright(0.2 * r, a, back - 0.15 * d, h / 2), _upright(0.8 * r, a, back - 0.15 * d, h / 2)) for a in turns(4)]
     parts = pieces("ring", hoop, rim) + pieces("hub", hub, rim)
     parts += pieces("spokes", [rod(*ends, 0.1 * d, n=6) for ends in spokes], rim) + pieces("marks", marks, rim)
@@ -123,9 +122,8 @@ def candle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     wick = pieces("wick", rod((0, 0, 0.93 * h), (0, 0, h), 0.0015, n=6), "shell")
     if form == "glass":
         body = slab(circle(0.86 * r, 16), (0.02 * h, 0.62 * h))
-        return Shape(
-            pieces("wax", body, wax) + pieces("glass", ring((r, r), (0.87 * r, 0.87 * r), (0.0, 0.9 * h), 12), "clear_glass") + wick
-        )
+        glass = ring((r, r), (0.87 * r, 0.87 * r), (0.0, 0.9 * h), 12)
+        return Shape(pieces("wax", body, wax) + pieces("glass", glass, "clear_glass") + wick)
     if form == "stick":
         stand = revolve([(r, 0.0), (0.9 * r, 0.04 * h), (0.2 * r, 0.09 * h), (0.16 * r, 0.42 * h)], 16)
         stand += revolve([(0.16 * r, 0.42 * h), (0.4 * r, 0.5 * h)], 12)
@@ -198,10 +196,8 @@ def kettle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
         finish = Finish("enamel", shade(rng, COLORS[pick(rng, "white sage navy barn_red mint")]), 0.3, density=900)
     tall = 0.86 * h if form == "electric" else 0.7 * h
     body = revolve([(r, 0.0), (r, 0.1 * h), (0.94 * r, 0.4 * h), (0.72 * r, tall)], 18, (x, 0.0))
-    top = [
-        slab(circle(0.66 * r, 14, (x, 0.0)), (tall, tall + 0.02), 0.004),
-        slab(circle(0.16 * r, 10, (x, 0.0)), (tall + 0.02, tall + 0.04)),
-    ]
+    top = [slab(circle(0.66 * r, 14, (x, 0.0)), (tall, tall + 0.02), 0.004)]
+    top.append(slab(circle(0.16 * r, 10, (x, 0.0)), (tall + 0.02, tall + 0.04)))
     spout = rod((x - 0.75 * r, 0, 0.55 * tall), (-w / 2 - 0.01, 0, 0.86 * tall), 0.022, 0.012, 8)
     bow, thick = [(x - 0.7 * r, tall), (x - 0.5 * r, h - 0.012), (x + 0.5 * r, h - 0.012), (x + 0.7 * r, tall)], 0.009
     if form == "electric":
@@ -269,10 +265,8 @@ def toy(rng: np.random.Generator, form: str, w: float, d: float, h: float, finis
         wheels = [s for x, y in corners(0.3 * w, 0.42 * d) for s in stand_up([wheel], (x, y, 0.18 * h))]
         return Shape(pieces("body", body, one_of(rng, bright)) + pieces("wheels", wheels, "shell"))
     fur = Finish("fur", shade(rng, (0.36, 0.22, 0.10) if rng.random() < 0.6 else (0.66, 0.58, 0.48)), 0.95, pattern="boucle", density=80)
-    bear = [
-        pillow(around(0.26 * w), (-0.2 * d, 0.35 * d), (0.0, 0.58 * h), 3),
-        pillow(around(0.24 * w), around(0.26 * d), (0.52 * h, 0.95 * h), 3),
-    ]
+    bear = [pillow(around(0.26 * w), (-0.2 * d, 0.35 * d), (0.0, 0.58 * h), 3)]
+    bear.append(pillow(around(0.24 * w), around(0.26 * d), (0.52 * h, 0.95 * h), 3))
     bear += [cushion(around(0.07 * w, s * 0.17 * w), (-0.03 * d, 0.05 * d), (0.84 * h, h), 0.012, 2) for s in (-1, 1)]  # ears
     bear += [cushion(around(0.1 * w, s * 0.32 * w), (-0.25 * d, 0.05 * d), (0.22 * h, 0.5 * h), 0.025, 2) for s in (-1, 1)]  # arms
     bear += [cushion(around(0.11 * w, s * 0.24 * w), (-0.5 * d, 0.0), (0.0, 0.2 * h), 0.02, 2) for s in (-1, 1)]  # legs

@@ -51,28 +51,21 @@ def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
 
 def back(rng: np.random.Generator, kind: str, frame: Frame, finishes: Finishes) -> Pieces:
     """Return a back of one kind: slat, ladder, panel, splat, spindle, cane, cross, pad."""
-    t = frame.thick
-    soft: list[Solid] = []
-    wood: list[Solid] = []
-    other: Pieces = ()
+    t, rise = frame.thick, frame.high - frame.low
     if kind == "pad":
-        soft = upright_pad(
-            rng, finishes, around(frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * (frame.high - frame.low), frame.high)
-        )
+        pad = upright_pad(rng, finishes, around(frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * rise, frame.high))
+        return pieces("back_pad", lean(pad, frame.low, frame.slope), finishes.soft)
+    wood = posts(frame, turned=kind in ("spindle", "ladder") and finishes.style.ornament > 0.3)
+    wood.append(frame.bar(0.86, 1.0, t))
+    if kind in RAILS:
+        wood += [frame.bar(low, high, t, deep) for low, high, deep in RAILS[kind]]
     else:
-        wood = posts(frame, turned=kind in ("spindle", "ladder") and finishes.style.ornament > 0.3)
-        wood.append(frame.bar(0.86, 1.0, t))
-        if kind in RAILS:
-            wood += [frame.bar(low, high, t, deep) for low, high, deep in RAILS[kind]]
-        else:
-            wood += {"slat": _slats, "splat": _splat, "spindle": _spindles, "cross": _cross}[kind](frame)
-        if kind == "cane":
-            rise = frame.high - frame.low
-            inset = 1.0 * t
-            sheet = box(around(frame.x - inset), around(0.004, frame.y), (frame.low + 0.3 * rise, frame.low + 0.86 * rise))
-            other = pieces("cane", lean([sheet], frame.low, frame.slope), cane(rng))
-    tilted = lean(wood, frame.low, frame.slope)
-    return pieces("back", tilted, frame.wood) + pieces("back_pad", lean(soft, frame.low, frame.slope), finishes.soft) + other
+        wood += {"slat": _slats, "splat": _splat, "spindle": _spindles, "cross": _cross}[kind](frame)
+    parts = pieces("back", lean(wood, frame.low, frame.slope), frame.wood)
+    if kind == "cane":
+        sheet = box(around(frame.x - t), around(0.004, frame.y), (frame.low + 0.3 * rise, frame.low + 0.86 * rise))
+        parts += pieces("cane", lean([sheet], frame.low, frame.slope), cane(rng))
+    return parts
 
 
 def _slats(frame: Frame) -> list[Solid]:

@@ -159,25 +159,16 @@ def freeze(shape: Shape) -> Shape:
     return Shape(tuple(shape.pieces()))
 
 
-def translate(shape: Shape, offset: Vector, prefix: str = "") -> Shape:
-    """Return the shape translated by `offset` (3,) [m]; `prefix` goes before the names of its pieces and movers."""
-    dx, dy, dz = (float(v) for v in offset)
+def translate(shape: Shape, offset: Axis3, prefix: str) -> Shape:
+    """Return the shape, whose movers all hang on its base, translated by `offset` [m]; `prefix` goes before their names and its pieces'."""
+    dx, dy, dz = offset
 
     def place(parts: Pieces) -> Pieces:
         return tuple(replace(p, name=prefix + p.name, solid=p.solid.translate(offset)) for p in parts)
 
-    movers = tuple(
-        replace(
-            m,
-            name=prefix + m.name,
-            pieces=place(m.pieces),
-            origin=(m.origin[0] + dx, m.origin[1] + dy, m.origin[2] + dz),
-            parent=m.parent if m.parent == "base" else prefix + m.parent,
-            after=tuple(prefix + name for name in m.after),
-        )
-        for m in shape.movers
-    )
-    return Shape(place(shape.base), movers)
+    origins = [(m.origin[0] + dx, m.origin[1] + dy, m.origin[2] + dz) for m in shape.movers]
+    movers = zip(shape.movers, origins, strict=True)
+    return Shape(place(shape.base), tuple(replace(m, name=prefix + m.name, pieces=place(m.pieces), origin=at) for m, at in movers))
 
 
 def join_shapes(*shapes: Shape) -> Shape:

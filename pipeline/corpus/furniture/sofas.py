@@ -29,9 +29,8 @@ def _easy(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fini
     t = 0.032 * finishes.style.slim
     wood = finishes.timber
     frame: list[Solid] = []
-    rest = sheet(
-        curve([(-y + 0.005, arm - 0.012), (-0.2 * y, arm - 0.006), (0.78 * y, arm - 0.02)], 2), 0.02, [0.046, 0.056, 0.052, 0.046, 0.04]
-    )
+    sweep = curve([(-y + 0.005, arm - 0.012), (-0.2 * y, arm - 0.006), (0.78 * y, arm - 0.02)], 2)
+    rest = sheet(sweep, 0.02, [0.046, 0.056, 0.052, 0.046, 0.04])
     for s in (-1, 1):
         px = s * (x - 0.024)
         frame += [beam((px, a, 0), (px, b, arm - 0.022), t, 1.2 * t) for a, b in ((-y + 0.03, -y + 0.05), (y - 0.03, y - 0.13))]
@@ -277,9 +276,8 @@ def _returns(w: float, d: float, front: float, lift: float, top: float, seat: fl
         return ()
     parts: Pieces = ()
     for lo, hi in edges(around(w / 2 - arm), min(0.75, 0.28 * w)):
-        parts += pieces(
-            "frame_end", cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, top), 0.018, 2), finishes.soft
-        )
+        frame = cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, top), 0.018, 2)
+        parts += pieces("frame_end", frame, finishes.soft)
         parts += seat_cushion(inset((lo, hi), 0.003), (-d / 2, front - 0.003), (top, seat + 0.022), 0.05, finishes.soft, None, 0.025)
     return parts
 
@@ -327,9 +325,8 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     x, cx = around(w / 2), (-w / 2, -w / 2 + long)
     parts = feet(rng, finishes, x, (y0, d / 2), lift, style) + feet(rng, finishes, cx, (-d / 2, y0 - 0.1), lift, style)
     parts += pieces("frame", cushion(inset(x, 0.012), (y0 + 0.03, d / 2 - 0.008), (lift, top), 0.018, 2), finishes.soft)
-    parts += pieces(
-        "frame_chaise", cushion((cx[0] + 0.012, cx[1] - 0.01), (-d / 2 + 0.02, y0 + 0.028), (lift, top), 0.018, 2), finishes.soft
-    )
+    chaise = cushion((cx[0] + 0.012, cx[1] - 0.01), (-d / 2 + 0.02, y0 + 0.028), (lift, top), 0.018, 2)
+    parts += pieces("frame_chaise", chaise, finishes.soft)
     face = d / 2 - 0.62 * deep
     parts += _back(rng, style, inset(x, arm), (face, d / 2), (top, h), finishes)
     radius = 0.1 if style == "cloud" else min(finishes.style.soft, 0.4 * arm)
@@ -368,9 +365,8 @@ def chaise_longue(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     kind = draw_kind(rng, finishes, "plank cross sled hairpin")
     parts = pieces("legs", legs(kind, (x - 0.06, y - 0.08), 0.15, 0.045), leg_finish(finishes, kind))
     parts += pieces("frame", cushion(around(x - 0.008), around(y - 0.015), (0.15, seat - 0.13), 0.02, 2), finishes.soft)
-    parts += seat_cushion(
-        (-x, x), (-y, y - 0.17), (seat - 0.13, seat + 0.022), finishes.style.soft, finishes.soft, piping(rng, finishes), 0.025
-    )
+    z, cord = (seat - 0.13, seat + 0.022), piping(rng, finishes)
+    parts += seat_cushion((-x, x), (-y, y - 0.17), z, finishes.style.soft, finishes.soft, cord, 0.025)
     if form == "recamier":
         pad = tufted_panel((-x, x), (y - 0.17, y - 0.06), (seat - 0.13, h - 0.16), max(2, round(w / 0.18)), 3)
         parts += pieces("back", pad, finishes.soft) + pieces("scroll", bolster((-x, x), y - 0.085, h - 0.085, 0.085), finishes.soft)

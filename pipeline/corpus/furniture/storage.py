@@ -212,13 +212,10 @@ def wine_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     for board in [p for p in shape.base if "_board_" in p.name and p.name.split("_")[1] == "0"]:
         low, high = board.solid.bounds()
         for k in range(min(6, int((high[0] - low[0]) / 0.105))):
-            x, z = low[0] + 0.06 + 0.105 * k, high[2] + 0.041
-            start = low[1] + 0.03
-            name = f"bottle_{board.name}_{k}"
-            bottles += pieces(name, rod((x, start, z), (x, start + 0.08, z), 0.014, n=8), "bottle", group=name)
-            bottles += pieces(
-                name, rod((x, start + 0.08, z), (x, min(start + 0.28, high[1] - 0.005), z), 0.038, n=10), "bottle", group=name
-            )
+            x, z, name = low[0] + 0.06 + 0.105 * k, high[2] + 0.041, f"bottle_{board.name}_{k}"
+            start, shoulder, end = low[1] + 0.03, low[1] + 0.03 + 0.08, min(low[1] + 0.03 + 0.28, high[1] - 0.005)
+            bottle = [rod((x, start, z), (x, shoulder, z), 0.014, n=8), rod((x, shoulder, z), (x, end, z), 0.038, n=10)]
+            bottles += pieces(name, bottle, "bottle", group=name)
     return Shape(shape.base + tuple(bottles), shape.movers)
 
 

@@ -121,10 +121,8 @@ def _bar(w: float, d: float, h: float, t: float, finishes: Finishes) -> Pieces:
 
 def cased_table(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes, *, drawer_height: float, count: int) -> Shape:
     """Build a shallow case with a row of drawers on legs."""
-    how = replace(
-        case_style(rng, finishes, "tapered square sled", (0.1, 0.2), "slab slab shaker"), feet_height=max(0.05, h - drawer_height - 0.04)
-    )
-    return case((w, d, h), grid(count, Cell("drawer")), how)
+    how = case_style(rng, finishes, "tapered square sled", (0.1, 0.2), "slab slab shaker")
+    return case((w, d, h), grid(count, Cell("drawer")), replace(how, feet_height=max(0.05, h - drawer_height - 0.04)))
 
 
 def coffee_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:

@@ -91,9 +91,8 @@ def _twigs(rng: np.random.Generator, w: float, d: float, h: float, tall: float) 
         for p in path[2:]:
             roots += [p - (0, 0, 0.01)] * 2
             tips += [p + polar(0.05, a + side * 0.9, 0.02) for side in (-1, 1)]
-    green = Finish(
-        "dry_leaf", shade(rng, FINISHES["leaf"].color if rng.random() < 0.6 else (0.40, 0.26, 0.10), 0.25), 0.7, pattern="leaf", density=300
-    )
+    color = FINISHES["leaf"].color if rng.random() < 0.6 else (0.40, 0.26, 0.10)
+    green = Finish("dry_leaf", shade(rng, color, 0.25), 0.7, pattern="leaf", density=300)
     return pieces("stems", stems, "twig") + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green)
 
 

@@ -199,11 +199,8 @@ def _towel_over_bar(x: Interval, d: float, top: float, drop: float, cloth: Finis
     """Return a towel over a bar at height `top`: the front fall `drop` long, the back one a little shorter, a border near the hem."""
     t, half = 0.012, 0.016
     front, back = top - drop, top - drop * float(rng.uniform(0.75, 0.9))
-    falls = [
-        cushion(x, (-half - t, -half), (front, top + 0.006), 0.005),
-        cushion(x, (half, half + t), (back, top + 0.006), 0.005),
-        cushion(x, around(half + t), (top + 0.004, top + 0.018), 0.006),
-    ]
+    falls = [cushion(x, y, (low, top + 0.006), 0.005) for y, low in (((-half - t, -half), front), ((half, half + t), back))]
+    falls.append(cushion(x, around(half + t), (top + 0.004, top + 0.018), 0.006))
     hem = replace(cloth, name="hem", color=tuple(0.75 * c for c in cloth.color), pattern="weave")  # type: ignore[arg-type]
     band = box(inset(x, 0.001), (-half - t - 0.0015, -half - t + 0.001), (front + 0.05, front + 0.085))
     return pieces("towel", falls, cloth) + pieces("hem", band, hem)
@@ -223,10 +220,8 @@ def folded_towels(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     for k in range(count):
         cloth = terry(rng, finishes)
         dx, dy = (float(v) for v in rng.uniform(-0.012, 0.012, 2))
-        span = (k * h / count, (k + 1) * h / count - 0.001)
-        parts += pieces(
-            "towel", cushion((-w / 2 + 0.012 + dx, w / 2 - 0.012 + dx), (-d / 2 + 0.012 + dy, d / 2 - 0.012 + dy), span, 0.02, 3), cloth
-        )
+        across, along = (-w / 2 + 0.012 + dx, w / 2 - 0.012 + dx), (-d / 2 + 0.012 + dy, d / 2 - 0.012 + dy)
+        parts += pieces("towel", cushion(across, along, (k * h / count, (k + 1) * h / count - 0.001), 0.02, 3), cloth)
     return Shape(parts)
 
 
@@ -252,9 +247,8 @@ def bath_mat(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
     cloth = terry(rng, finishes)
     pile = replace(cloth, name="pile", color=tuple(0.85 * c for c in cloth.color))  # type: ignore[arg-type]
     mat = board(around(w / 2), around(d / 2), (0.0, 0.75 * h), 0.03, 2)
-    return Shape(
-        pieces("mat", mat, cloth) + pieces("pile", board(around(w / 2 - 0.05), around(d / 2 - 0.05), (0.75 * h, h), 0.02, 2), pile)
-    )
+    field = board(around(w / 2 - 0.05), around(d / 2 - 0.05), (0.75 * h, h), 0.02, 2)
+    return Shape(pieces("mat", mat, cloth) + pieces("pile", field, pile))
 
 
 def blind(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -283,11 +277,9 @@ def blind(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
 def paper_holder(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a roll of paper on an arm, or on one under a lid; the back is at the wall (+y)."""
     r = 0.42 * h
-    arm = [
-        box((-w / 2, -w / 2 + 0.014), (d / 2 - 0.012, d / 2), (0.3 * h, 0.9 * h), 0.002),
-        box((-w / 2, -w / 2 + 0.014), (d / 2 - r - 0.03, d / 2 - 0.012), (0.54 * h, 0.62 * h), 0.002),
-        box((-w / 2 + 0.014, w / 2), (d / 2 - r - 0.03, d / 2 - r - 0.018), (0.54 * h, 0.62 * h), 0.002),
-    ]
+    side, z, front = (-w / 2, -w / 2 + 0.014), (0.54 * h, 0.62 * h), d / 2 - r - 0.03
+    arm = [box(side, (d / 2 - 0.012, d / 2), (0.3 * h, 0.9 * h), 0.002), box(side, (front, d / 2 - 0.012), z, 0.002)]
+    arm.append(box((side[1], w / 2), (front, d / 2 - r - 0.018), z, 0.002))
     if form == "lid":
         arm.append(box((-w / 2 + 0.01, w / 2), around(d / 2), (h - 0.004, h)))
     roll = stand_up([slab(circle(r, 20), around(0.38 * w), 0.002)], (0, 0, 0))[0].rotate("z", math.pi / 2)
