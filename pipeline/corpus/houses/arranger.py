@@ -58,7 +58,7 @@ class Arranger:
 
     def pick(self, category: str, width: float = math.inf, depth: float = math.inf, height: float = math.inf) -> Model | None:
         """Draw a model of the category within the limits [m]."""
-        return self.stock.pick(self.rng, category, self.style, width=width, depth=depth, height=min(height, self.space.height - 0.02))
+        return self.stock.pick(self.rng, category, self.style, (width, depth, min(height, self.space.height - 0.02)))
 
     def smaller(self, category: str, tries: int, by: float, width: float = math.inf, depth: float = math.inf) -> Iterator[Model]:
         """Draw models of the category within the limits [m] to try in turn: each at most `by` times as wide as the one before."""
@@ -119,8 +119,10 @@ class Arranger:
     def on_wall(self, category: str, low: float) -> bool:
         """Fix a piece to a wall, its underside `low` above the floor."""
         model = self.pick(category, height=self.space.height - low - 0.05)
-        spot = None if model is None else against(self.rng, self.space, model, front=0.0, corner=0.0, low=low)
-        return model is not None and spot is not None and self.space.try_add(model, spot, low)
+        if model is None:
+            return False
+        spot = against(self.rng, self.space, model, front=0.0, corner=0.0, low=low)
+        return spot is not None and self.space.try_add(model, spot, low)
 
     def lamp(self, category: str, x: float, y: float, yaw: float = 0.0) -> bool:
         """Hang a lamp at (x, y) under the ceiling."""

@@ -104,12 +104,8 @@ def _bed_spots(arranger: Arranger, model: Model, beside: float) -> list[tuple[fl
             if room < w + 2 * beside:
                 continue
             middle = (a + b) / 2 + float(rng.normal(0, 0.08)) if room > w + 2 * beside + 0.2 else (a + b) / 2
-            candidates.append(
-                (
-                    3.0 * (1.0 + min(room - w, 2.5)),
-                    on_side(space, i, float(np.clip(middle, a + w / 2 + beside, b - w / 2 - beside)), d, gap),
-                )
-            )
+            at = float(np.clip(middle, a + w / 2 + beside, b - w / 2 - beside))
+            candidates.append((3.0 * (1.0 + min(room - w, 2.5)), on_side(space, i, at, d, gap)))
             lean = w / 2 + (beside or 0.005 + abs(float(rng.normal(0, 0.02))))
             if room > w + 2 * beside + 0.4:
                 candidates += [(aside, on_side(space, i, a + lean, d, gap)), (aside, on_side(space, i, b - lean, d, gap))]
@@ -149,9 +145,8 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
                 continue
             place = on_side(space, i, s + float(arranger.rng.normal(0, 0.04)), stand.size[1], back_gap(arranger.rng))
             away = abs((place.x - spot.x) * np.sin(spot.yaw) - (place.y - spot.y) * np.cos(spot.yaw))
-            if 0.6 < away - model.size[1] / 2 - stand.size[1] / 2 < FARTHEST_TV and space.try_add(
-                stand, place, clearances=[ahead(place, stand.size[1], 0.4, stand.size[0])]
-            ):
+            before = ahead(place, stand.size[1], 0.4, stand.size[0])
+            if 0.6 < away - model.size[1] / 2 - stand.size[1] / 2 < FARTHEST_TV and space.try_add(stand, place, clearances=[before]):
                 return True
     return False
 

@@ -24,17 +24,10 @@ def furnish_kitchen(arranger: Arranger) -> None:
         wanted = ["refrigerator", *wanted]
     left = run(arranger, wanted)
     if any(c != "kitchen_cabinet" for c in left):
-        left = run(
-            arranger,
-            ["kitchen_cabinet", *[c for c in left if c not in {"refrigerator", "kitchen_cabinet"}], "kitchen_cabinet", "kitchen_cabinet"],
-        )
+        appliances = [c for c in left if c not in {"refrigerator", "kitchen_cabinet"}]
+        run(arranger, ["kitchen_cabinet", *appliances, "kitchen_cabinet", "kitchen_cabinet"])
     if not any(i.model.category == "refrigerator" for i in arranger.space.items):
         arranger.at_wall("refrigerator", corner=0.95)
-    if arranger.wants("trash_can"):
-        arranger.in_corner("trash_can")
-    if arranger.space.area > 7.0 and arranger.wants("barstool"):
-        arranger.in_corner("barstool")
-    arranger.light()
 
 
 def run(arranger: Arranger, wanted: list[str]) -> list[str]:
@@ -83,8 +76,7 @@ def above(arranger: Arranger, side: int, placed: list[tuple[Model, float]]) -> N
     for model, s in base:
         if model.category == "kitchen_cabinet":
             oven = arranger.pick("microwave", width=model.size[0] - 0.02, depth=model.size[1] - 0.02)
-            spot = None if oven is None else on_side(space, side, s, oven.size[1], 0.05)
-            if oven is not None and spot is not None and space.try_add(oven, spot, model.size[2] + 0.001):
+            if oven is not None and space.try_add(oven, on_side(space, side, s, oven.size[1], 0.05), model.size[2] + 0.001):
                 return
 
 

@@ -41,14 +41,15 @@ def _table(arranger: Arranger, count: int, chair: Model) -> Model | None:
     """Draw a table long enough for half of the chairs on each long side (with six and more, two may sit at the ends; with four, one at each side of a square)."""
     if count == 4 and arranger.chance(SQUARE_SHARE):
         least, most = chair.size[0] + 0.25, chair.size[0] + 0.6
-        square = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, width=most, depth=most, narrowest=least)
+        square = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, (most, most, math.inf), narrowest=least)
         if square is not None and _is_square(square):
             return square
     along = {2: 1, 4: 2, 6: 2 if arranger.chance(0.4) else 3, 8: 3}[count]
     need = along * (chair.size[0] + 0.04)
     most = {2: 1.5, 4: 1.9, 6: 2.5, 8: 3.2}[count]
     for depth in (DEEPEST[count], math.inf):
-        model = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, width=max(most, need + 0.3), depth=depth, narrowest=need)
+        limits = (max(most, need + 0.3), depth, math.inf)
+        model = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, limits, narrowest=need)
         if model is not None:
             return model
     return None
@@ -121,12 +122,8 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
             seat = shift_spot(seat, 0.0, -0.04, float(rng.choice([-1, 1]) * rng.uniform(0.05, 0.25)))
         space.try_add(chair, seat, under=under)
     if arranger.deal.mark("dining_lamp") < rates["lamp"]:
-        arranger.lamp(
-            "pendant_lamp",
-            spot.x + float(np.clip(rng.normal(0, OFF_LAMP), -0.16, 0.16)),
-            spot.y + float(rng.normal(0, OFF_LAMP / 3)),
-            spot.yaw,
-        )
+        dx, dy = float(np.clip(rng.normal(0, OFF_LAMP), -0.16, 0.16)), float(rng.normal(0, OFF_LAMP / 3))
+        arranger.lamp("pendant_lamp", spot.x + dx, spot.y + dy, spot.yaw)
     return True
 
 

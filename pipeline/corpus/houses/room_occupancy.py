@@ -252,12 +252,8 @@ def outside_rects(polygon: Sequence[tuple[float, float]]) -> list[Rect]:
     xs = sorted({x for x, _ in polygon})
     ys = sorted({y for _, y in polygon})
     x0, x1, y0, y1 = xs[0], xs[-1], ys[0], ys[-1]
-    around: list[Rect] = [
-        (x0 - FAR, y0 - FAR, x0, y1 + FAR),
-        (x1, y0 - FAR, x1 + FAR, y1 + FAR),
-        (x0 - FAR, y0 - FAR, x1 + FAR, y0),
-        (x0 - FAR, y1, x1 + FAR, y1 + FAR),
-    ]
+    left, right, bottom, top = x0 - FAR, x1 + FAR, y0 - FAR, y1 + FAR
+    around: list[Rect] = [(left, bottom, x0, top), (x1, bottom, right, top), (left, bottom, right, y0), (left, y1, right, top)]
     for a, b in itertools.pairwise(xs):
         inside = inside_intervals(polygon, (a + b) / 2)
         edges = [y0, *(v for span in inside for v in span), y1]

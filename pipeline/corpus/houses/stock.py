@@ -69,21 +69,10 @@ class Stock:
             self.by_category[model.category].append(model)
         self.styles = tuple(sorted({m.style for m in models if m.style}))
 
-    def pick(
-        self,
-        rng: np.random.Generator,
-        category: str,
-        style: str,
-        *,
-        width: float = math.inf,
-        depth: float = math.inf,
-        height: float = math.inf,
-        narrowest: float = 0.0,
-    ) -> Model | None:
-        """Draw a model of a category no larger than the limits [m]; None if there is none."""
-        fitting = [
-            m for m in self.by_category.get(category, ()) if narrowest <= m.size[0] <= width and m.size[1] <= depth and m.size[2] <= height
-        ]
+    def pick(self, rng: np.random.Generator, category: str, style: str, most: Sequence[float], narrowest: float = 0.0) -> Model | None:
+        """Draw a model of a category no larger than `most` (w, d, h) and no narrower than that [m]; None if there is none."""
+        models = self.by_category.get(category, ())
+        fitting = [m for m in models if m.size[0] >= narrowest and all(a <= b for a, b in zip(m.size, most, strict=True))]
         if not fitting:
             return None
         weights = [STYLE_WEIGHT if m.style == style else 1.0 for m in fitting]
