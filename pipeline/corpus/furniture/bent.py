@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.finishes import PROFILES
 from pipeline.corpus.furniture.intervals import Interval, Spot
-from pipeline.corpus.furniture.solids import Face, Solid, Vector, at_height, revolve, slab, stack
+from pipeline.corpus.furniture.solids import Face, Solid, Vector, at_height, perpendicular, revolve, slab, stack
 
 Points = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Poin
     along, normals = _mitres(p, closed)
     angles = (np.arange(n) + 0.5) * (2 * np.pi / n)
     segments = []
-    u = _across(along[0])
+    u = perpendicular(along[0])
     v = np.cross(along[0], u)
     for k, direction in enumerate(along):
         turned, slid = np.cross(v, direction), u - direction * float(u @ direction)  # carried along, so that the facets do not twist
@@ -71,12 +71,6 @@ def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Poin
             ends.append(p[j] + ring + slide[:, None] * direction)
         segments.append(split_bent_quads(stack(ends)))
     return segments
-
-
-def _across(direction: Points) -> Points:
-    helper = np.array([1.0, 0, 0]) if abs(direction[0]) < 0.9 else np.array([0, 1.0, 0])
-    u = np.cross(direction, helper)
-    return np.asarray(u / np.linalg.norm(u))
 
 
 def band(path: Points, thick: float, z: Interval, *, closed: bool = False) -> list[Solid]:

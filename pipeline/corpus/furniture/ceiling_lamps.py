@@ -7,7 +7,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import curve, lathe, tube, turns
 from pipeline.corpus.furniture.finishes import Finishes, pick
 from pipeline.corpus.furniture.intervals import around, polar
-from pipeline.corpus.furniture.lamps import bulb, cord, rose, shade, shade_word, turn_along_y
+from pipeline.corpus.furniture.lamps import bulb, shade, shade_word, turn_along_y
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, ring, rod, slab
 
@@ -33,7 +33,8 @@ def pendant_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: flo
 
 def _suspension(z: float, h: float, finishes: Finishes) -> Pieces:
     """Return a cord from `z` up to a canopy at the ceiling."""
-    return pieces("cord", cord((z, h - 0.024)), finishes.handle) + pieces("rose", rose(h), finishes.handle)
+    cord, rose = rod((0, 0, z), (0, 0, h - 0.024), THIN, n=6), revolve([(0.055, h - 0.024), (0.055, h - 0.006), (0.9 * 0.055, h)], 20)
+    return pieces("cord", cord, finishes.handle) + pieces("rose", rose, finishes.handle)
 
 
 def _linear(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:

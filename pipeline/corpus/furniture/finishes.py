@@ -19,15 +19,13 @@ Pattern = Literal[
 FILE = "manifests/furniture.yaml"
 PATH = Path(__file__).resolve().parents[3] / FILE
 STYLES: Mapping[str, StyleSpec] = {name: known.spec for name, known in style.load().styles.items()}
-CLASSIC, ORIENTAL = (style.load().groups[name] for name in ("classic", "oriental"))
 COLORS: Mapping[str, Color] = {name: color for kind in style.load().colours.values() for name, color in kind.items()}
 LEATHERS = style.load().colours["leathers"]
 CLOTH_GROUNDS: Color = (0.72, 0.68, 0.60)  # the light thread of striped, checked and flowered cloth
 _KNOWN: dict[str, Any] = yaml.safe_load(PATH.read_text(encoding="utf-8"))
 PALETTES: Mapping[str, tuple[Color, ...]] = params.convert(Mapping[str, tuple[Color, ...]], _KNOWN["palettes"], "palettes", FILE)
-PROFILES: Mapping[str, tuple[tuple[float, ...], ...]] = params.convert(
-    Mapping[str, tuple[tuple[float, ...], ...]], _KNOWN["profiles"], "profiles", FILE
-)
+Profile = tuple[tuple[float, ...], ...]
+PROFILES: Mapping[str, Profile] = params.convert(Mapping[str, Profile], _KNOWN["profiles"], "profiles", FILE)
 SUPER_CATEGORIES: Mapping[str, str] = _KNOWN["super_categories"]
 
 
@@ -67,6 +65,11 @@ class Finishes:
     style: StyleSpec
     timber: Finish
     stone: Finish
+
+    @property
+    def tradition(self) -> str:
+        """The group of styles.yaml that the style is of: "classic", "oriental" or none ("")."""
+        return next((name for name in ("classic", "oriental") if self.style_name in style.load().groups[name]), "")
 
 
 Material = Finish | str

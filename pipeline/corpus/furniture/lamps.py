@@ -25,16 +25,6 @@ def shade_word(rng: np.random.Generator, finishes: Finishes, without: str) -> st
     return one_of(rng, words)
 
 
-def cord(z: Interval) -> list[Solid]:
-    """Return a cord in the middle from z[0] up to z[1]."""
-    return [rod((0, 0, z[0]), (0, 0, z[1]), 0.0035, n=6)]
-
-
-def rose(h: float) -> list[Solid]:
-    """Return the canopy at the ceiling, at height `h`."""
-    return revolve([(0.055, h - 0.024), (0.055, h - 0.006), (0.9 * 0.055, h)], 20)
-
-
 def bulb(z: float, tall: float, at: Spot) -> Pieces:
     """Return a bulb that stands on `z`."""
     profile = [(0.2 * tall, z), (0.42 * tall, z + 0.45 * tall), (0.34 * tall, z + 0.75 * tall), (0.1 * tall, z + tall)]

@@ -67,14 +67,11 @@ def leg(kind: str, at: Spot, out: Spot, height: float, thick: float) -> list[Sol
         share, most, foot, top = RAKES[kind]
         reach = min(share * h, most)
         return [rod((x + sx * reach, y + sy * reach, 0), (x, y, h), foot * t, top * t, 10)]
+    if kind in ("turned", "bun") and h < 0.16:
+        return lathe("bun_leg", max(0.6 * t, 0.028), h, 14, at)
     if kind in ("turned", "bun"):
-        return _bun(x, y, h, t) if h < 0.16 else _turned_leg(x, y, h, t)
+        return [*lathe("turned_leg", t, h, 12, at), box(around(0.52 * t, x), around(0.52 * t, y), (0.84 * h, h), 0.002)]
     return _ORNATE[kind](x, y, sx, sy, h, t)
-
-
-def _turned_leg(x: float, y: float, h: float, t: float) -> list[Solid]:
-    block = box(around(0.52 * t, x), around(0.52 * t, y), (0.84 * h, h), 0.002)
-    return [*lathe("turned_leg", t, h, 12, (x, y)), block]
 
 
 def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
@@ -98,11 +95,6 @@ def _hairpin(x: float, y: float, sx: float, sy: float, h: float, t: float) -> li
     b = rod((x, y - sy * spread, h - 0.003), (x0 + sx * 0.004, y0 - sy * 0.0065, 0.006), r, n=6)
     plate = box(inset(between(x, x - sx * spread), -r), inset(between(y, y - sy * spread), -r), (h - 0.003, h))
     return [a, b, plate, revolve([(0.013, 0.0), (0.013, 0.006)], 10, (x0, y0))[0]]
-
-
-def _bun(x: float, y: float, h: float, t: float) -> list[Solid]:
-    r = max(0.6 * t, 0.028)
-    return revolve([(0.55 * r, 0.0), (r, 0.25 * h), (r, 0.5 * h), (0.6 * r, 0.78 * h), (0.85 * r, 0.86 * h), (0.85 * r, h)], 14, (x, y))
 
 
 def _horse(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:

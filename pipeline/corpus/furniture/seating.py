@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, prism, sheet, tube, turns, wall
-from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Finishes, Material, cane, one_of
+from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of
 from pipeline.corpus.furniture.intervals import around, between, corners, polar, split
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
@@ -39,14 +39,9 @@ class Frame:
 
 def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
     """Return the two posts that rise from the seat."""
-    solids = []
-    for s in (-1, 1):
-        x, y, t = s * (frame.x - frame.thick / 2), frame.y, frame.thick
-        if turned:
-            solids.append(rod((x, y, frame.low), (x, y, frame.high), 0.5 * t, 0.4 * t, 8))
-        else:
-            solids.append(beam((x, y, frame.low), (x, y, frame.high), 0.86 * t, 0.86 * t, 1.15))
-    return solids
+    t, xs = frame.thick, [s * (frame.x - frame.thick / 2) for s in (-1, 1)]
+    ends = [((x, frame.y, frame.low), (x, frame.y, frame.high)) for x in xs]
+    return [rod(*span, 0.5 * t, 0.4 * t, 8) if turned else beam(*span, 0.86 * t, 0.86 * t, 1.15) for span in ends]
 
 
 def back(rng: np.random.Generator, kind: str, frame: Frame, finishes: Finishes) -> Pieces:
@@ -115,7 +110,7 @@ def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     x, y = w / 2, d / 2
     thick = 0.034 * finishes.style.slim
     without = "plank cross hairpin block bun sled pipe" if form != "cafe" else "plank cross block bun"
-    kind = "ming" if finishes.style_name in ORIENTAL else draw_kind(rng, finishes, without)
+    kind = "ming" if finishes.tradition == "oriental" else draw_kind(rng, finishes, without)
     wood = leg_finish(finishes, kind)
     rise = 0.12 * (h - seat)
     back_y = y - rise - 0.5 * thick
@@ -135,8 +130,8 @@ def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: flo
         parts += seat_cushion(span_x, span_y, (seat - top, seat + 0.02), 0.04, finishes.soft, piping(rng, finishes), 0.018)
     frame = Frame(x - 0.012, back_y, under + rail, h, rise / (h - seat), thick, wood)
     kinds = {"wood": "slat ladder panel cane", "upholstered": "pad", "spindle": "spindle", "cafe": "cross"}[form]
-    if form == "wood" and finishes.style_name in (*ORIENTAL, *CLASSIC):
-        kinds = "splat" if finishes.style_name in ORIENTAL else "splat ladder"
+    if form == "wood" and finishes.tradition:
+        kinds = "splat" if finishes.tradition == "oriental" else "splat ladder"
     choice = one_of(rng, kinds.split())
     if choice == "pad":
         foot, head = (back_y, under + rail), (back_y, seat - 0.021 + 0.08 * (h - seat + 0.02))

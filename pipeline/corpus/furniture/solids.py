@@ -253,13 +253,17 @@ def rounded_rectangle(x: Interval, y: Interval, radius: float, steps: int = 4) -
     return np.array(points)
 
 
+def perpendicular(direction: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a unit vector (3,) at right angles to another."""
+    u = np.cross(direction, (1.0, 0.0, 0.0) if abs(direction[0]) < 0.9 else (0.0, 1.0, 0.0))
+    return np.asarray(u / np.linalg.norm(u))
+
+
 def rod(start: Vector, end: Vector, radius: float, end_radius: float | None = None, n: int = 8) -> Solid:
     """Return a (tapered) round bar between two points."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     direction = (b - a) / np.linalg.norm(b - a)
-    helper = np.array([1.0, 0, 0]) if abs(direction[0]) < 0.9 else np.array([0, 1.0, 0])
-    u = np.cross(direction, helper)
-    u /= np.linalg.norm(u)
+    u = perpendicular(direction)
     v = np.cross(direction, u)
     angles = (np.arange(n) + 0.5) * (2 * np.pi / n)
     ring = np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * v

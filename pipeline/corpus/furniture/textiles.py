@@ -7,20 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import band
-from pipeline.corpus.furniture.finishes import (
-    CLASSIC,
-    CLOTH_GROUNDS,
-    COLORS,
-    ORIENTAL,
-    Finish,
-    Finishes,
-    Material,
-    Pattern,
-    cover,
-    one_of,
-    pick,
-    shade,
-)
+from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, COLORS, Finish, Finishes, Material, Pattern, cover, one_of, pick, shade
 from pipeline.corpus.furniture.intervals import Interval, around, inset, split
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, board, box, circle, cushion, pillow, ring, rod, rounded_rectangle, slab, stand_up
@@ -103,7 +90,7 @@ def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: 
 
 def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a woven rug: bordered, with diamonds, striped, plain with a deep pile, or round; some with fringes."""
-    classic = finishes.style_name in (*CLASSIC, *ORIENTAL)
+    classic = finishes.tradition != ""
     pattern: Pattern = pick(rng, "rug_border" if classic else "rug_diamonds rug_stripes rug_border boucle")  # type: ignore[assignment]
     if form == "round":
         pattern = "rug_border" if classic else "boucle"

@@ -32,12 +32,6 @@ PROGRAMS = 24
 LARGEST_AISLE = 3.1  # what is larger is called a corridor [m2]
 
 
-def area(rng: np.random.Generator, room_type: str) -> float:
-    """Draw an area [m2] for a room type."""
-    mean, spread, least, most = AREAS[room_type]
-    return float(np.clip(rng.normal(mean, spread), least, most))
-
-
 class Apartment:
     """Collects the rooms of a program and what joins them; `types` are 3D-FRONT's by the rooms' ids."""
 
@@ -52,8 +46,9 @@ class Apartment:
         name = f"room_{len(self.rooms)}"
         size = Range()
         if room_type in AREAS:
-            _, _, least, most = AREAS[room_type]
-            size = Range(min=LOW * least, max=HIGH * most, target=area(self.rng, room_type))
+            mean, spread, least, most = AREAS[room_type]
+            target = float(np.clip(self.rng.normal(mean, spread), least, most))
+            size = Range(min=LOW * least, max=HIGH * most, target=target)
         self.rooms.append(RoomReq.model_validate({"id": name, "type": ROOMS[room_type]["plan"], "area": size}))
         self.types[name] = room_type
         if host:
