@@ -17,42 +17,10 @@ from pipeline.corpus.furniture.wavefront import sides_of
 from pipeline.seeds import generator
 
 SMALL = {
-    "rug",
-    "curtain",
-    "pillow",
-    "table_lamp",
-    "cup",
-    "plate",
-    "bowl",
-    "vase",
-    "book",
-    "book_stack",
-    "basket",
-    "picture",
-    "mirror",
-    "clock",
-    "television",
-    "bath_mat",
-    "blind",
-    "towel",
-    "folded_towels",
-    "throw",
-    "paper_holder",
-    "coat_hooks",
-    "photo_frame",
-    "candle",
-    "tray",
-    "potted_herb",
-    "bottle",
-    "canister",
-    "kettle",
-    "cutting_board",
-    "fruit_bowl",
-    "toy",
-    "pen_cup",
-    "alarm_clock",
-    "tissue_box",
-}
+    "rug", "curtain", "pillow", "table_lamp", "cup", "plate", "bowl", "vase", "book", "book_stack", "basket", "picture", "mirror",
+    "clock", "television", "bath_mat", "blind", "towel", "folded_towels", "throw", "paper_holder", "coat_hooks", "photo_frame", "candle",
+    "tray", "potted_herb", "bottle", "canister", "kettle", "cutting_board", "fruit_bowl", "toy", "pen_cup", "alarm_clock", "tissue_box",
+}  # fmt: skip
 WOODEN = 0.035  # how deep one hard piece may sit in another: a tenon, a screwed joint [m]
 SOFT = 0.06  # the same where one of them is upholstery, which gives [m]
 FOAM = 200.0  # density below which a piece is soft [kg/m3]
