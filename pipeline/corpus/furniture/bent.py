@@ -3,6 +3,7 @@
 Each bend is a chain of straight pieces whose ends are mitred, so that neighbours touch in a plane and none enters another.
 """
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -120,14 +121,10 @@ def sheet(profile: Points, thick: float, width: float | Sequence[float] | Points
     """Return a bent board: a profile in (y, z) (m, 2), `thick`, across x; `width` may differ from point to point."""
     half = np.broadcast_to(np.asarray(width, float), (len(profile),)) / 2
     left, right = _sides(profile, thick, closed=False)
-    segments = []
-    for i in range(len(profile) - 1):
-        corners = []
-        for k in (i, i + 1):
-            (y0, z0), (y1, z1) = right[k], left[k]
-            corners.append(np.array([(-half[k], y1, z1), (half[k], y1, z1), (half[k], y0, z0), (-half[k], y0, z0)]))
-        segments.append(split_bent_quads(stack(corners)))
-    return segments
+    corners = []
+    for w, (y0, z0), (y1, z1) in zip(half, right, left, strict=True):
+        corners.append(np.array([(-w, y1, z1), (w, y1, z1), (w, y0, z0), (-w, y0, z0)]))
+    return [split_bent_quads(stack(ends)) for ends in itertools.pairwise(corners)]
 
 
 def prism(outline: Points, axis: str, span: Interval) -> Solid:

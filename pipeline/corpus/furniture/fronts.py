@@ -126,13 +126,9 @@ def _louvres(inner: Rect, thickness: float) -> list[Solid]:
     count = min(18, max(3, round(inner.height / 0.045)))
     pitch = inner.height / count
     middle, half = inner.y + thickness / 2, 0.5 * thickness - 0.003
-    slats = []
-    for i in range(count):
-        z = inner.z[0] + (i + 0.5) * pitch
-        slat = box(inner.x, around(0.003, middle), around(0.56 * pitch, z))
-        angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
-        slats.append(slat.rotate("x", -angle, (0.0, middle, z)))
-    return slats
+    angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
+    heights = [inner.z[0] + (i + 0.5) * pitch for i in range(count)]
+    return [box(inner.x, around(0.003, middle), around(0.56 * pitch, z)).rotate("x", -angle, (0.0, middle, z)) for z in heights]
 
 
 def _reeds(rect: Rect, proud: float) -> list[Solid]:
@@ -140,12 +136,8 @@ def _reeds(rect: Rect, proud: float) -> list[Solid]:
     count = min(18, max(4, round(rect.width / 0.028)))
     pitch = rect.width / count
     turns = np.linspace(math.pi, 2 * math.pi, 5)
-    strips = []
-    for i in range(count):
-        x = rect.x[0] + (i + 0.5) * pitch
-        outline = np.stack([x + 0.46 * pitch * np.cos(turns), rect.y + proud + proud * np.sin(turns)], axis=1)
-        strips.append(slab(outline, rect.z))
-    return strips
+    across, depth = 0.46 * pitch * np.cos(turns), rect.y + proud + proud * np.sin(turns)
+    return [slab(np.stack([rect.x[0] + (i + 0.5) * pitch + across, depth], axis=1), rect.z) for i in range(count)]
 
 
 def reach(handle: HandleStyle) -> float:
@@ -159,9 +151,7 @@ def handle(style: FrontStyle, rect: Rect, *, upright: bool, at: Spot, length: fl
     It collides as one solid, but for a bar on feet: fingers come behind that.
     """
     x, z = at
-    group = name
-    y, half = rect.y, length / 2
-    part = "line_fixed_handle"
+    y, half, group, part = rect.y, length / 2, name, "line_fixed_handle"
     solids: list[Solid]
     if style.handle in ("none", "groove"):
         return ()
@@ -227,13 +217,8 @@ def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float) ->
     length = min(0.16 if rect.height < 0.8 else 0.32, 0.5 * rect.height)
     if style.handle == "long":
         length = min(0.9, 0.62 * rect.height)
-    axes: dict[Side, tuple[Axis3, Axis3]] = {
-        "left": ((0, 0, -1), (x0, rect.y, cz)),
-        "right": ((0, 0, 1), (x1, rect.y, cz)),
-        "bottom": ((1, 0, 0), (cx, rect.y, z0)),
-        "top": ((-1, 0, 0), (cx, rect.y, z1)),
-    }
-    axis, origin = axes[hinge]
+    axes: dict[Side, Axis3] = {"left": (0, 0, -1), "right": (0, 0, 1), "bottom": (1, 0, 0), "top": (-1, 0, 0)}
+    x, z = {"left": (x0, cz), "right": (x1, cz), "bottom": (cx, z0), "top": (cx, z1)}[hinge]
     height = min(max(cz, z0 + 0.1 + length / 2), 1.1)
     if z1 < 0.95 and rect.height > 0.35:  # low cabinets are gripped near the top
         height = z1 - 0.06 - length / 2
@@ -244,7 +229,7 @@ def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float) ->
     if not upright:
         length = min(0.45, 0.6 * rect.width)
     parts = panel(rect, style) + handle(style, rect, upright=upright, at=grips[hinge], length=length)
-    return Mover(name, parts, "revolute", axis, origin, upper, "hinge_door", "door")
+    return Mover(name, parts, "revolute", axes[hinge], (x, rect.y, z), upper, "hinge_door", "door")
 
 
 def sliding_door(name: str, rect: Rect, style: FrontStyle, towards: float, travel: float) -> Mover:

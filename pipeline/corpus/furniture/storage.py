@@ -12,7 +12,7 @@ from pipeline.corpus.furniture.intervals import Interval, around
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import box, rod
 
-BOOK_COLORS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue")
+BOOK_COLORS = ("terracotta", "navy", "sage", "ivory")
 
 
 def front_style(rng: np.random.Generator, finishes: Finishes, panels: str = "") -> FrontStyle:
@@ -28,14 +28,13 @@ def case_style(
     """Draw how a carcass is made, and how its fronts look where no `style` says so; `height` of its feet [m]."""
     style = style or front_style(rng, finishes, panels)
     kind: Feet = pick(rng, feet)  # type: ignore[assignment]
-    low = {"plinth": 0.05, "none": 0.0}.get(kind)
     tall = float(rng.uniform(*height))
     metal_feet = kind in ("sled", "hairpin")
     return Case(
         body=finishes.body,
         style=style,
         feet=kind,
-        feet_height=tall if low is None else low,
+        feet_height={"plinth": 0.05, "none": 0.0}.get(kind, tall),
         feet_finish=finishes.handle if metal_feet else (finishes.body if kind == "plinth" else finishes.accent),
         top_thickness=float(rng.uniform(0.018, 0.03)),
         overhang=float(rng.choice([0.0, 0.0, 0.008])),
@@ -92,14 +91,12 @@ def _sliding_wardrobe(rng: np.random.Generator, form: str, w: float, d: float, h
 
 def _rails(shape: Shape, finishes: Finishes) -> Pieces:
     """Return a hanging rail under every hat shelf."""
-    rails: list[Piece] = []
-    for piece in shape.base:
-        if piece.name.endswith("_board_0"):
-            low, high = piece.solid.bounds()
-            if high[0] - low[0] > 0.35 and high[2] > 1.4:
-                y, z = (low[1] + high[1]) / 2, low[2] - 0.06
-                rails += pieces(f"{piece.name}_rail", rod((low[0] + 1e-3, y, z), (high[0] - 1e-3, y, z), 0.012), finishes.handle)
-    return tuple(rails)
+    rails: Pieces = ()
+    for name, (low, high) in ((p.name, p.solid.bounds()) for p in shape.base if p.name.endswith("_board_0")):
+        if high[0] - low[0] > 0.35 and high[2] > 1.4:
+            y, z = (low[1] + high[1]) / 2, low[2] - 0.06
+            rails += pieces(f"{name}_rail", rod((low[0] + 1e-3, y, z), (high[0] - 1e-3, y, z), 0.012), finishes.handle)
+    return rails
 
 
 def cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -251,9 +248,8 @@ def bookshelf(rng: np.random.Generator, form: str, w: float, d: float, h: float,
 def books(rng: np.random.Generator, shape: Shape) -> Pieces:
     """Return a few rows of books on the boards of open shelves."""
     parts: list[Piece] = []
-    palette = [Finish(f"book_{n}", COLORS[n], 0.8, density=600) for n in BOOK_COLORS[:4]]
-    boards = [p for p in shape.base if "_board_" in p.name or p.name == "bottom"]
-    for board in boards:
+    palette = [Finish(f"book_{n}", COLORS[n], 0.8, density=600) for n in BOOK_COLORS]
+    for board in [p for p in shape.base if "_board_" in p.name or p.name == "bottom"]:
         low, high = board.solid.bounds()
         if rng.random() < 0.45 or high[0] - low[0] < 0.2:
             continue
