@@ -99,11 +99,8 @@ def _swap_model(rng: np.random.Generator, item: Item, stock: Stock) -> Item:
     if rng.random() >= REPLACED:
         return item
     w, d, h = item.model.size
-    similar = [
-        m
-        for m in stock.by_category[item.model.category]
-        if m.model_id != item.model.model_id and 0.75 < w / m.size[0] < 1.3 and 0.75 < d / m.size[1] < 1.3 and abs(m.size[2] - h) < 0.1
-    ]
+    others = [m for m in stock.by_category[item.model.category] if m.model_id != item.model.model_id]
+    similar = [m for m in others if 0.75 < w / m.size[0] < 1.3 and 0.75 < d / m.size[1] < 1.3 and abs(m.size[2] - h) < 0.1]
     if not similar:
         return item
     model = one_of(rng, similar)

@@ -14,10 +14,9 @@ HUNG_AT = 1.45  # underside of the wall units [m]
 
 def furnish_kitchen(arranger: Arranger) -> None:
     """Furnish a kitchen with one run, or two that meet in a corner or face each other."""
-    wanted = ["sink_cabinet", "kitchen_cabinet", "oven"]
-    wanted += ["dishwasher"] if arranger.wants("dishwasher") else []
-    wanted += ["kitchen_cabinet"] if arranger.wants("second_cabinet") else []
-    middle = wanted[1:]
+    middle = ["kitchen_cabinet", "oven"]
+    middle += ["dishwasher"] if arranger.wants("dishwasher") else []
+    middle += ["kitchen_cabinet"] if arranger.wants("second_cabinet") else []
     arranger.rng.shuffle(middle)
     wanted = [*middle[:1], "sink_cabinet", *middle[1:], "kitchen_cabinet", "kitchen_cabinet", "kitchen_cabinet"]
     if arranger.wants("fridge_in_run") or arranger.space.area < SMALL:

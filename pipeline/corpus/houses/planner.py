@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline.corpus import front_statistics
 from pipeline.corpus.houses import rates
 from pipeline.corpus.houses.rates import Deal
-from pipeline.entities.plan import Plan, Room
+from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan import solve
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Footprint, Link, LinkKind, Range, RoomReq, Shell, Style
@@ -193,9 +193,8 @@ def _living(rng: np.random.Generator, drawn: list[tuple[str, ...]]) -> list[tupl
     share = float(rates.load()["living_dining"])  # type: ignore[arg-type]
     marks = (rng.permutation(len(alone)) + rng.random()) / max(1, len(alone))
     both = {k for k, mark in zip(alone, marks, strict=True) if mark < share}
-    return [
-        tuple(("LivingDiningRoom" if k in both else "LivingRoom") if t == "living" else t for t in rooms) for k, rooms in enumerate(drawn)
-    ]
+    names = ["LivingDiningRoom" if k in both else "LivingRoom" for k in range(len(drawn))]
+    return [tuple(name if t == "living" else t for t in rooms) for name, rooms in zip(names, drawn, strict=True)]
 
 
 def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:
@@ -208,10 +207,7 @@ def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:
             continue
         angle = float(rng.uniform(1.45, 1.57))  # of open leaves [rad]
         openings = (o if o.swing is None else replace(o, swing=replace(o.swing, angle=angle)) for o in plan.openings)
-        return replace(plan, rooms=tuple(replace(r, type=_front_type(r, types)) for r in plan.rooms), openings=tuple(openings))
+        aisles = {r.room_id for r in plan.rooms if types[r.room_id] == "Corridor" and r.area < LARGEST_AISLE}
+        rooms = (replace(r, type="Aisle" if r.room_id in aisles else types[r.room_id]) for r in plan.rooms)
+        return replace(plan, rooms=tuple(rooms), openings=tuple(openings))
     raise ContentError(f"no house plan after {PROGRAMS} programs", "choose another seed in params.yaml")
-
-
-def _front_type(room: Room, types: Mapping[str, str]) -> str:
-    name = types[room.room_id]
-    return "Aisle" if name == "Corridor" and room.area < LARGEST_AISLE else name

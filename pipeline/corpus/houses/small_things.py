@@ -116,7 +116,7 @@ def lay_rug(arranger: Arranger, share: float) -> None:
     tables = [k for k, i in enumerate(space.items) if i.model.category == "coffee_table"]
     floor = [(k, i.rect()) for k, i in enumerate(space.items) if i.position[2] < 0.05]
     doors = space.clearances[: len(space.doors)]
-    places = [space.items[k].position[:2] for k in tables] + [(x, y) for x, y in arranger.middles()]
+    places = [space.items[k].position[:2] for k in tables] + arranger.middles()
     yaw = space.items[tables[0]].yaw if tables else float(rng.choice([0.0, math.pi / 2]))
     for rug in rugs:
         for x, y in places:
@@ -125,7 +125,7 @@ def lay_rug(arranger: Arranger, share: float) -> None:
                 on = [k for k, r in floor if meets(box, r)]
                 if any(k not in tables or not _within(space.items[k].rect(), box) for k in on) or any(meets(box, r) for r in doors):
                     continue
-                if any(low < 0.02 and meets(box, r) for r, low, _ in space.solids if low < -1.0):
+                if any(meets(box, r) for r, low, _ in space.solids if low < -1.0):  # a wall
                     continue
                 index = len(space.items)
                 space.items.append(Item(rug, space.number, (x, y, 0.0), turn))
