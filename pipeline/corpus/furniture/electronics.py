@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, draw_material, one_of, shade
+from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, draw_material, one_of, tint
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid, top_button, top_knob
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, split
 from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, pieces, staves
@@ -65,7 +65,7 @@ def _key(name: str, x: float, y: float, half_x: float, half_y: float, top: float
 
 def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a telephone that lies on its back: all screen with keys at its side, a keypad, or one that flips open."""
-    finish = draw_material(rng, "dark", "silver", Finish("shell_blue", shade(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500))
+    finish = draw_material(rng, "dark", "silver", Finish("shell_blue", tint(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500))
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     if form == "smart":
         side = w / 2 - 0.0014
@@ -188,7 +188,7 @@ def printer(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
 def _enamel(rng: np.random.Generator) -> Material:
     """Draw the colour of a small appliance."""
     colour = one_of(rng, ((0.55, 0.05, 0.04), (0.68, 0.60, 0.42), (0.30, 0.45, 0.42), (0.05, 0.09, 0.16)))
-    gay = Finish("enamel", shade(rng, colour, 0.15), 0.25, density=900)
+    gay = Finish("enamel", tint(rng, colour, 0.15), 0.25, density=900)
     return draw_material(rng, "steel", "enamel", "graphite", gay)
 
 

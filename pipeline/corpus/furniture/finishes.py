@@ -94,27 +94,27 @@ def draw_material(rng: np.random.Generator, *materials: Material) -> Material:
 
 def lacquer(rng: np.random.Generator, name: str, roughness: float = 0.35) -> Finish:
     """Return a lacquer of that name in a shade of its own."""
-    return Finish(f"lacquer_{name}", shade(rng, COLORS[name], 0.05), roughness, density=680)
+    return Finish(f"lacquer_{name}", tint(rng, COLORS[name], 0.05), roughness, density=680)
 
 
 def cover(rng: np.random.Generator, name: str, pattern: Pattern = "weave") -> Finish:
     """Return a cloth or leather over foam; the density is that of the upholstery."""
     if name in LEATHERS:
-        return Finish(name, shade(rng, COLORS[name]), 0.4, pattern="leather", density=75)
+        return Finish(name, tint(rng, COLORS[name]), 0.4, pattern="leather", density=75)
     if pattern == "leather":
         pattern = "weave"
     second = CLOTH_GROUNDS if pattern in ("stripe", "check", "floral") else None
     if second is not None and max(COLORS[name]) > 0.5:  # a light cloth's pattern is darker than its ground
         second = (0.16, 0.18, 0.22)
-    return Finish(name, shade(rng, COLORS[name]), 0.75 if pattern == "velvet" else 0.92, pattern=pattern, density=60, second=second)
+    return Finish(name, tint(rng, COLORS[name]), 0.75 if pattern == "velvet" else 0.92, pattern=pattern, density=60, second=second)
 
 
 def cane(rng: np.random.Generator) -> Finish:
     """Return a woven panel of rattan."""
-    return Finish("cane", shade(rng, (0.56, 0.38, 0.19), 0.08), 0.8, pattern="cane", density=250, second=(0.20, 0.12, 0.055))
+    return Finish("cane", tint(rng, (0.56, 0.38, 0.19), 0.08), 0.8, pattern="cane", density=250, second=(0.20, 0.12, 0.055))
 
 
-def shade(rng: np.random.Generator, color: Color, spread: float = 0.12) -> Color:
+def tint(rng: np.random.Generator, color: Color, spread: float = 0.12) -> Color:
     """Return the colour a little lighter or darker, warmer or cooler."""
     factors = np.exp(rng.normal(0, spread) + rng.normal(0, spread / 4, 3))
     r, g, b = np.clip(np.array(color) * factors, 0.012, 0.9)
@@ -125,7 +125,7 @@ def draw_finishes(rng: np.random.Generator, style_name: str) -> Finishes:
     """Choose the finishes of a model by its style."""
     style = STYLES[style_name]
     wood = pick(rng, style.woods)
-    timber = Finish(wood, shade(rng, COLORS[wood]), 0.5, pattern="grain", density=620)
+    timber = Finish(wood, tint(rng, COLORS[wood]), 0.5, pattern="grain", density=620)
     metal = pick(rng, style.metals)
     tube = Finish(metal, COLORS[metal], 0.35, 0.85, density=2600)  # as dense as tubes and sheet are
     body = front = timber
@@ -140,7 +140,7 @@ def draw_finishes(rng: np.random.Generator, style_name: str) -> Finishes:
     soft = cover(rng, name, one_of(rng, patterns))
     second = cover(rng, pick(rng, style.fabrics), one_of(rng, patterns))
     if second.name == soft.name:
-        second = replace(second, name=f"{second.name}_2", color=shade(rng, second.color, 0.5))
+        second = replace(second, name=f"{second.name}_2", color=tint(rng, second.color, 0.5))
     accent = tube if rng.random() < style.tube else timber
     stone = FINISHES[pick(rng, style.stones)]
     return Finishes(body, front, accent, tube, soft, second, material, style_name, style, timber, stone)

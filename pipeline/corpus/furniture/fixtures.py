@@ -315,9 +315,11 @@ def _door_lever(name: str, at: Axis3, outwards: float, side: float, finish: Mate
     turn = math.pi / 2 if outwards < 0 else -math.pi / 2
     rose = [s.rotate("x", turn).translate(at) for s in revolve([(0.024, 0.0005), (0.024, 0.007), (0.020, 0.009)], 16)]
     neck = [s.rotate("x", turn).translate(at) for s in revolve([(0.010, 0.009), (0.010, LEVER - 0.004)], 10)]
-    arm_y = sorted((at[1] + outwards * (LEVER - 0.016), at[1] + outwards * LEVER))
-    arm_x = sorted((at[0] + side * 0.010, at[0] - side * 0.115))
-    arm = box((arm_x[0], arm_x[1]), (arm_y[0], arm_y[1]), around(0.010, at[2]), 0.003)
+    arm_x, arm_y = (
+        between(at[0] + side * 0.010, at[0] - side * 0.115),
+        between(at[1] + outwards * (LEVER - 0.016), at[1] + outwards * LEVER),
+    )
+    arm = box(arm_x, arm_y, around(0.010, at[2]), 0.003)
     parts = pieces("rose", rose, finish) + pieces("lever", [*neck, arm], finish)
     axis = (0.0, -side, 0.0)
     return Mover(name, parts, "revolute", axis, at, math.radians(40), "hinge_handle", "handle", (0.0, outwards, 0.0), "leaf")

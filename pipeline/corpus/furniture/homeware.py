@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, lean, tube, turns
-from pipeline.corpus.furniture.finishes import COLORS, FINISHES, PALETTES, Finish, Finishes, Material, Pattern, one_of, pick, shade
+from pipeline.corpus.furniture.finishes import COLORS, FINISHES, PALETTES, Finish, Finishes, Material, Pattern, one_of, pick, tint
 from pipeline.corpus.furniture.fronts import Rect, frame
 from pipeline.corpus.furniture.intervals import Interval, around, corners, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
@@ -79,7 +79,7 @@ def clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
     spokes = [(_upright(0.2 * r, a, back - 0.15 * d, h / 2), _upright(0.8 * r, a, back - 0.15 * d, h / 2)) for a in turns(4)]
     parts = pieces("ring", hoop, rim) + pieces("hub", hub, rim)
     parts += pieces("spokes", [rod(*ends, 0.1 * d, n=6) for ends in spokes], rim) + pieces("marks", marks, rim)
-    return Shape(parts + pieces("hands", hands, Finish("marks", shade(rng, COLORS["charcoal"], 0.1), 0.5, density=900)))
+    return Shape(parts + pieces("hands", hands, Finish("marks", tint(rng, COLORS["charcoal"], 0.1), 0.5, density=900)))
 
 
 def _upright(radius: float, angle: float, y: float, z: float) -> Vector:
@@ -118,7 +118,7 @@ def photo_frame(rng: np.random.Generator, form: str, w: float, d: float, h: floa
 def candle(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a pillar candle on a dish, one in a glass, or a thin one on a stick."""
     r = w / 2
-    wax = Finish("wax", shade(rng, one_of(rng, PALETTES["wax"]), 0.08), 0.5, density=900)
+    wax = Finish("wax", tint(rng, one_of(rng, PALETTES["wax"]), 0.08), 0.5, density=900)
     wick = pieces("wick", rod((0, 0, 0.93 * h), (0, 0, h), 0.0015, n=6), "shell")
     if form == "glass":
         body = slab(circle(0.86 * r, 16), (0.02 * h, 0.62 * h))
@@ -157,10 +157,10 @@ def bottle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
         body = revolve([(0.96 * r, 0.0), (r, 0.02 * h), (r, 0.6 * h), (0.4 * r, 0.7 * h)], 14)
         head = [rod((0, 0, 0.7 * h), (0, 0, 0.9 * h), 0.12 * r, n=8), slab(circle(0.34 * r, 10), (0.9 * h, h))]
         head.append(box((-0.9 * r, 0.0), around(0.1 * r), (0.93 * h, 0.98 * h)))
-        soap = Finish("soap", shade(rng, color, 0.1), 0.3, density=900)
+        soap = Finish("soap", tint(rng, color, 0.1), 0.3, density=900)
         return Shape(pieces("body", body, soap) + pieces("pump", head, finishes.handle))
     if form == "shampoo":
-        finish: Material = Finish("plastic", shade(rng, color, 0.1), 0.35, density=900)
+        finish: Material = Finish("plastic", tint(rng, color, 0.1), 0.35, density=900)
         body = [slab(circle(r, 14, squash=0.62), z) for z in ((0.0, 0.25 * h), (0.6 * h, 0.86 * h))]
         top = pieces("cap", slab(circle(0.6 * r, 12, squash=0.8), (0.86 * h, h), 0.003), "shell")
         band = slab(circle(r, 14, squash=0.62), (0.25 * h, 0.6 * h))
@@ -179,7 +179,7 @@ def canister(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
     lid = finishes.timber if rng.random() < 0.6 else finishes.handle
     top = [slab(circle(0.96 * r, 16), (0.86 * h, 0.94 * h), 0.003), slab(circle(0.25 * r, 12), (0.94 * h, h), 0.002)]
     if form == "glass":
-        food = Finish("food", shade(rng, one_of(rng, PALETTES["food"]), 0.15), 0.9, pattern="speckle", density=700)
+        food = Finish("food", tint(rng, one_of(rng, PALETTES["food"]), 0.15), 0.9, pattern="speckle", density=700)
         inside = slab(circle(0.9 * r, 16), (0.02 * h, 0.86 * h * float(rng.uniform(0.45, 0.9))))
         jar = ring((r, r), (0.91 * r, 0.91 * r), (0.0, 0.86 * h), 12)
         return Shape(pieces("food", inside, food) + pieces("jar", jar, "clear_glass") + pieces("lid", top, lid))
@@ -193,7 +193,7 @@ def kettle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     x = -w / 2 + r
     finish: Material = "kettle_steel"
     if rng.random() >= 0.6:
-        finish = Finish("enamel", shade(rng, COLORS[pick(rng, "white sage navy barn_red mint")]), 0.3, density=900)
+        finish = Finish("enamel", tint(rng, COLORS[pick(rng, "white sage navy barn_red mint")]), 0.3, density=900)
     tall = 0.86 * h if form == "electric" else 0.7 * h
     body = revolve([(r, 0.0), (r, 0.1 * h), (0.94 * r, 0.4 * h), (0.72 * r, tall)], 18, (x, 0.0))
     top = [slab(circle(0.66 * r, 14, (x, 0.0)), (tall, tall + 0.02), 0.004)]
@@ -209,7 +209,7 @@ def kettle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
 
 def cutting_board(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a board that lies with a knife on it, or a block of knives."""
-    timber = Finish("board", shade(rng, COLORS[pick(rng, "beech oak walnut bamboo")]), 0.5, pattern="grain", density=650)
+    timber = Finish("board", tint(rng, COLORS[pick(rng, "beech oak walnut bamboo")]), 0.5, pattern="grain", density=650)
     board = box(around(w / 2), around(d / 2), (0.0, 0.6 * h), 0.004)
     y = 0.2 * d
     blade = box((-0.1 * w, 0.3 * w), (y - 0.018, y + 0.012), (0.6 * h, 0.6 * h + 0.002))
@@ -217,14 +217,14 @@ def cutting_board(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     parts = pieces("board", board, timber) + pieces("blade", blade, "blade") + pieces("grip", grip, "shell")
     if form == "bread":
         loaf = cushion((-0.34 * w, 0.2 * w), (-0.42 * d, -0.02 * d), (0.6 * h, 0.6 * h + 0.075), 0.032, 3)
-        parts += pieces("bread", loaf, Finish("crust", shade(rng, (0.42, 0.20, 0.06)), 0.9, pattern="speckle", density=300))
+        parts += pieces("bread", loaf, Finish("crust", tint(rng, (0.42, 0.20, 0.06)), 0.9, pattern="speckle", density=300))
     return Shape(parts)
 
 
 def fruit_bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bowl of fruit: wide and low, or on a foot."""
     r = w / 2
-    finish = Finish("turned_wood", shade(rng, COLORS["walnut"]), 0.5, pattern="grain", density=650) if rng.random() < 0.5 else glaze(rng)
+    finish = Finish("turned_wood", tint(rng, COLORS["walnut"]), 0.5, pattern="grain", density=650) if rng.random() < 0.5 else glaze(rng)
     low = 0.0 if form == "low" else 0.3 * h
     body = revolve([(0.4 * r, low), (0.75 * r, low + 0.14 * h), (r, low + 0.42 * h)], 18)
     if form == "foot":
@@ -241,12 +241,12 @@ def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, n
     color = one_of(rng, PALETTES["fruit"])
     rounds = [(0.3 * r, -r), (0.75 * r, -0.75 * r), (r, -0.1 * r), (0.8 * r, 0.7 * r), (0.3 * r, r)]
     solids = [s.translate(at) for s in revolve(rounds, 10)]
-    return pieces(f"fruit_{number}", solids, Finish("fruit", shade(rng, color, 0.2), 0.4, density=800))
+    return pieces(f"fruit_{number}", solids, Finish("fruit", tint(rng, color, 0.2), 0.4, density=800))
 
 
 def toy(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a toy: a bear that sits, a ball, a car, or a tower of blocks."""
-    bright = [Finish(f"paint_{n}", shade(rng, COLORS[n], 0.1), 0.35, density=300) for n in ("coral", "sky", "lemon", "mint")]
+    bright = [Finish(f"paint_{n}", tint(rng, COLORS[n], 0.1), 0.35, density=300) for n in ("coral", "sky", "lemon", "mint")]
     if form == "ball":
         r = min(w, d, h) / 2
         profile = [(0.38 * r, -0.92 * r), (0.8 * r, -0.6 * r), (r, 0.0), (0.8 * r, 0.6 * r), (0.38 * r, 0.92 * r)]
@@ -264,7 +264,7 @@ def toy(rng: np.random.Generator, form: str, w: float, d: float, h: float, finis
         wheel = slab(circle(0.18 * h, 12), around(0.06 * d))
         wheels = [s for x, y in corners(0.3 * w, 0.42 * d) for s in stand_up([wheel], (x, y, 0.18 * h))]
         return Shape(pieces("body", body, one_of(rng, bright)) + pieces("wheels", wheels, "shell"))
-    fur = Finish("fur", shade(rng, (0.36, 0.22, 0.10) if rng.random() < 0.6 else (0.66, 0.58, 0.48)), 0.95, pattern="boucle", density=80)
+    fur = Finish("fur", tint(rng, (0.36, 0.22, 0.10) if rng.random() < 0.6 else (0.66, 0.58, 0.48)), 0.95, pattern="boucle", density=80)
     bear = [pillow(around(0.26 * w), (-0.2 * d, 0.35 * d), (0.0, 0.58 * h), 3)]
     bear.append(pillow(around(0.24 * w), around(0.26 * d), (0.52 * h, 0.95 * h), 3))
     bear += [cushion(around(0.07 * w, s * 0.17 * w), (-0.03 * d, 0.05 * d), (0.84 * h, h), 0.012, 2) for s in (-1, 1)]  # ears
@@ -280,7 +280,7 @@ def pen_cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
     parts = pieces("cup", cup, finishes.front if rng.random() < 0.5 else finishes.handle)
     for k, a in enumerate(turns(4, float(rng.uniform(0, 1)))):
         pen = rod(polar(0.4 * r, a, tall), polar(0.8 * r, a, h * float(rng.uniform(0.86, 1.0))), 0.0045, n=6)
-        ink = shade(rng, COLORS[pick(rng, "black navy coral mustard emerald")])
+        ink = tint(rng, COLORS[pick(rng, "black navy coral mustard emerald")])
         parts += pieces(f"pen_{k}", pen, Finish("pen", ink, 0.4, density=900))
     return Shape(parts)
 
@@ -304,7 +304,7 @@ def tissue_box(rng: np.random.Generator, form: str, w: float, d: float, h: float
     x = w / 2 if form == "flat" else min(w, d) / 2
     finish = finishes.timber
     if rng.random() >= 0.4:
-        finish = Finish("card", shade(rng, COLORS[pick(rng, "white sage blush dusty_blue greige")]), 0.7, density=300)
+        finish = Finish("card", tint(rng, COLORS[pick(rng, "white sage blush dusty_blue greige")]), 0.7, density=300)
     body = box((-x, x), around(d / 2), (0.0, 0.7 * h), 0.003)
     sheet = blades(np.array([(0, 0, 0.69 * h), (0.004, 0, 0.69 * h)]), np.array([(-0.02, 0.006, h), (0.025, -0.006, 0.94 * h)]), 0.07)
     return Shape(pieces("box", body, finish) + pieces("tissue", sheet, "paper"))
@@ -323,7 +323,7 @@ def coat_hooks(rng: np.random.Generator, form: str, w: float, d: float, h: float
     parts += pieces("hooks", hooks, finishes.handle)
     for k in (1, count - 2) if form != "bare" else ():
         x = xs[k]
-        color = shade(rng, COLORS[pick(rng, "charcoal indigo_cloth taupe_cloth rust_cloth grey_cloth")], 0.1)
+        color = tint(rng, COLORS[pick(rng, "charcoal indigo_cloth taupe_cloth rust_cloth grey_cloth")], 0.1)
         bag = [cushion(around(0.1, x), (-d / 2, back - 0.02), (0.0, 0.55 * h), 0.03, 3)]
         bag += [box(around(0.006, x + s * 0.05), (-0.005, 0.005), (0.5 * h, h - 0.06)) for s in (-1, 1)]
         bag.append(box(around(0.056, x), (-0.005, 0.005), (h - 0.06, h - 0.045)))
@@ -338,7 +338,7 @@ def potted_herb(rng: np.random.Generator, form: str, w: float, d: float, h: floa
     pot = glaze(rng) if rng.random() < 0.7 else "ceramic"
     parts = pieces("pot", revolve([(0.74 * r, 0.0), (r, tall)], 14), pot)
     parts += pieces("soil", slab(circle(0.86 * r, 12), (tall, tall + 0.002)), "shell")
-    green = Finish("leaf", shade(rng, FINISHES["leaf"].color, 0.25), 0.6, pattern="leaf", density=300)
+    green = Finish("leaf", tint(rng, FINISHES["leaf"].color, 0.25), 0.6, pattern="leaf", density=300)
     angle = np.arange(count) * 2.4
     share = (np.arange(count) + 1) / count
     out = (1 - 0.7 * share) * 0.5 * w if form != "herb" else rng.uniform(0.1, 1.0, count) * 0.5 * w

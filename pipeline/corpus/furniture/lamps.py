@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import band, curve, tube, turns
-from pipeline.corpus.furniture.finishes import PROFILES, Finish, Finishes, Material, cane, one_of
-from pipeline.corpus.furniture.finishes import shade as tinted
+from pipeline.corpus.furniture.finishes import PROFILES, Finish, Finishes, Material, cane, one_of, tint
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, stand_up
@@ -46,7 +45,7 @@ def shade(
     covers: dict[str, Material] = {"rattan": weave, "cone": finishes.front, "dome": dome, "mushroom": finishes.front, "crystal": "glow"}
     cover = covers.get(kind, "shade_cloth")
     if cover == "shade_cloth" and rng.random() < 0.3:
-        cover = Finish("shade_linen", tinted(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
+        cover = Finish("shade_linen", tint(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
     return pieces("shade", _walls(kind, profile, at, n), cover) + _fittings(radius, profile[-1][0], z, at, metal)
 
 

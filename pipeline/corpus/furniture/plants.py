@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
-from pipeline.corpus.furniture.finishes import FINISHES, PROFILES, Finish, Finishes, Material, draw_material, shade
+from pipeline.corpus.furniture.finishes import FINISHES, PROFILES, Finish, Finishes, Material, draw_material, tint
 from pipeline.corpus.furniture.intervals import Spot, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
@@ -23,7 +23,7 @@ def plant(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
     pot_r = min(0.3 * min(w, d), 0.2)
     pot, crown = _pot(rng, pot_r, min(0.34 * h, 0.36, 1.9 * pot_r), finishes)
     grow = {"bush": _bush, "palm": _palm, "monstera": _monstera, "fig": _fig, "olive": _olive}[form]
-    green = Finish("leaf", shade(rng, FINISHES["leaf"].color, 0.28), 0.55, pattern="leaf", density=300)
+    green = Finish("leaf", tint(rng, FINISHES["leaf"].color, 0.28), 0.55, pattern="leaf", density=300)
     return Shape(pot + grow(rng, Growth((w / 2, d / 2), crown, h, pot_r, green)))
 
 
@@ -169,5 +169,5 @@ def _olive(rng: np.random.Generator, g: Growth) -> Pieces:
             p = top + t * (end - top)
             for m in range(2):
                 g.leaf(p, p + reach * np.array(polar(1.0, a + j * 1.9 + m * math.pi, float(rng.uniform(-0.2, 0.5)))))
-    grey = Finish("olive_leaf", shade(rng, (0.16, 0.22, 0.12), 0.15), 0.6, pattern="leaf", density=300)
+    grey = Finish("olive_leaf", tint(rng, (0.16, 0.22, 0.12), 0.15), 0.6, pattern="leaf", density=300)
     return g.parts("trunk", "bark", 0.02 + 0.03 * g.small, grey, n=4)

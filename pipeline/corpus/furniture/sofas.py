@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, sheet, tube, turns, upright, wall
-from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of, shade
+from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of, tint
 from pipeline.corpus.furniture.intervals import Interval, around, between, corners, edges, inset, polar, split
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
 from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
@@ -145,7 +145,7 @@ def _tub(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finis
 def _rattan(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round back of cane in a bent frame, a cushion on a woven seat."""
     seat, x, y = min(0.4, 0.5 * h), w / 2, d / 2
-    pole = Finish("rattan_pole", shade(rng, (0.42, 0.25, 0.10)), 0.6, pattern="grain", density=450)
+    pole = Finish("rattan_pole", tint(rng, (0.42, 0.25, 0.10)), 0.6, pattern="grain", density=450)
     weave, r = cane(rng), 0.015
     bow = arc((0.0, -0.05 * d), x - 0.03, -0.06 * math.pi, 1.06 * math.pi, 12, (0.55 * d - 0.03) / (x - 0.03))
     height = np.interp(np.abs(np.linspace(-1, 1, 13)), [0, 0.5, 1], [h - r, h - 0.25 * (h - seat), seat + 0.2])

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, prism, tube
-from pipeline.corpus.furniture.finishes import COLORS, FINISHES, PROFILES, Finish, Finishes, Material, draw_material, one_of, pick, shade
+from pipeline.corpus.furniture.finishes import COLORS, FINISHES, PROFILES, Finish, Finishes, Material, draw_material, one_of, pick, tint
 from pipeline.corpus.furniture.fronts import Rect, lid
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, polar
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, pieces, staves
@@ -19,7 +19,7 @@ BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dus
 def glaze(rng: np.random.Generator) -> Finish:
     """Draw a glazed pottery."""
     name = one_of(rng, GLAZES)
-    return Finish(f"glaze_{name}", shade(rng, COLORS[name], 0.06), 0.2, density=2200)
+    return Finish(f"glaze_{name}", tint(rng, COLORS[name], 0.06), 0.2, density=2200)
 
 
 def vessel(profile: list[Spot], wall: float, floor: float, n: int) -> list[Solid]:
@@ -59,7 +59,7 @@ def plate(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
 def bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bowl of pottery or wood."""
     r = w / 2
-    finish = Finish("turned_wood", shade(rng, COLORS["beech"]), 0.5, pattern="grain", density=650) if form == "wood" else glaze(rng)
+    finish = Finish("turned_wood", tint(rng, COLORS["beech"]), 0.5, pattern="grain", density=650) if form == "wood" else glaze(rng)
     profile = [(0.42 * r, 0.0), (0.78 * r, 0.32 * h), (0.95 * r, 0.7 * h), (r, h)]
     return Shape(pieces("bowl", vessel(profile, 0.006, 0.08 * h, 24), finish))
 
@@ -92,14 +92,14 @@ def _twigs(rng: np.random.Generator, w: float, d: float, h: float, tall: float) 
             roots += [p - (0, 0, 0.01)] * 2
             tips += [p + polar(0.05, a + side * 0.9, 0.02) for side in (-1, 1)]
     color = FINISHES["leaf"].color if rng.random() < 0.6 else (0.40, 0.26, 0.10)
-    green = Finish("dry_leaf", shade(rng, color, 0.25), 0.7, pattern="leaf", density=300)
+    green = Finish("dry_leaf", tint(rng, color, 0.25), 0.7, pattern="leaf", density=300)
     return pieces("stems", stems, "twig") + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green)
 
 
 def binding(rng: np.random.Generator) -> Finish:
     """Draw a book's cover."""
     name = one_of(rng, BINDINGS)
-    return Finish(f"binding_{name}", shade(rng, COLORS[name], 0.12), 0.6, density=700)
+    return Finish(f"binding_{name}", tint(rng, COLORS[name], 0.12), 0.6, density=700)
 
 
 def flat_book(rng: np.random.Generator, x: Interval, y: Interval, z: Interval) -> Pieces:
@@ -151,7 +151,7 @@ def book_stack(rng: np.random.Generator, form: str, w: float, d: float, h: float
 
 def basket(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a woven basket, round or square, with two handles."""
-    straw = Finish("straw", shade(rng, (0.52, 0.36, 0.18)), 0.9, pattern="cane", density=300, second=(0.22, 0.14, 0.07))
+    straw = Finish("straw", tint(rng, (0.52, 0.36, 0.18)), 0.9, pattern="cane", density=300, second=(0.22, 0.14, 0.07))
     body = h - 0.03
     top = body + 0.015
     if form == "round":
@@ -179,7 +179,7 @@ def tray_walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0
 
 def trash_can(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bin: round with a pedal, square, with a lid that slides, or with one that swings in a hood."""
-    finish = draw_material(rng, "steel", "plastic", Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))
+    finish = draw_material(rng, "steel", "plastic", Finish("enamel_bin", tint(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))
     top = h - 0.035
     cover_finish = finish if pick(rng, "same dark") == "same" else "plastic"
     if form in ("round", "pedal"):
@@ -263,14 +263,12 @@ def _carton(w: float, d: float, h: float) -> Shape:
     base += pieces("tape", box((-0.03, 0.03), (y[0] - 0.0006, y[0]), (0.35 * h, low)), "tape", group="tape")
     movers = []
     for name, side in (("flap_front", -1), ("flap_back", 1)):
-        span = sorted((side * d / 2, side * 0.002))
-        board = pieces(name, box(x, (span[0], span[1]), (low + t + 0.002, h)), "cardboard")
+        board = pieces(name, box(x, between(side * d / 2, side * 0.002), (low + t + 0.002, h)), "cardboard")
         edge: Axis3 = (0.0, side * d / 2, h)
         movers.append(Mover(name, board, "revolute", (-float(side), 0.0, 0.0), edge, math.radians(110), "hinge_lid", "lid", UP))
     for name, side in (("flap_left", -1), ("flap_right", 1)):
-        reach = 0.45 * min(d, w)
-        span = sorted((side * w / 2, side * (w / 2 - reach)))
-        board = pieces(name, box((span[0], span[1]), (y[0] + t + 0.003, y[1] - t - 0.003), (low + 0.001, low + t)), "cardboard")
+        span = between(side * w / 2, side * (w / 2 - 0.45 * min(d, w)))
+        board = pieces(name, box(span, (y[0] + t + 0.003, y[1] - t - 0.003), (low + 0.001, low + t)), "cardboard")
         edge = (side * w / 2, 0.0, low + t)
         waits = ("flap_front", "flap_back")
         movers.append(Mover(name, board, "revolute", (0.0, float(side), 0.0), edge, math.radians(110), "hinge_lid", "lid", UP, after=waits))

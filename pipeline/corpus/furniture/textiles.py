@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import band
-from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, COLORS, Finish, Finishes, Material, Pattern, cover, one_of, pick, shade
+from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, COLORS, Finish, Finishes, Material, Pattern, cover, one_of, pick, tint
 from pipeline.corpus.furniture.intervals import Interval, around, inset, split
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, board, box, circle, cushion, pillow, ring, rod, rounded_rectangle, slab, stand_up
@@ -97,8 +97,8 @@ def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, finis
     if form == "shaggy":
         pattern = "boucle"
     ground = finishes.soft if max(finishes.soft.color) > 0.1 or pattern != "boucle" else finishes.second
-    light = CLOTH_GROUNDS if max(ground.color) < 0.45 else shade(rng, COLORS["taupe_cloth"], 0.3)
-    weave = Finish("rug", shade(rng, ground.color, 0.08), 0.95, pattern=pattern, density=250, second=None if pattern == "boucle" else light)
+    light = CLOTH_GROUNDS if max(ground.color) < 0.45 else tint(rng, COLORS["taupe_cloth"], 0.3)
+    weave = Finish("rug", tint(rng, ground.color, 0.08), 0.95, pattern=pattern, density=250, second=None if pattern == "boucle" else light)
     if form == "round":
         return Shape(pieces("rug", slab(circle(w / 2, 40), (0.0, h), min(0.004, 0.3 * h)), weave))
     fringe = 0.06 if form == "fringed" else 0.0
@@ -156,7 +156,7 @@ def terry(rng: np.random.Generator, finishes: Finishes) -> Finish:
     """Draw the cloth of a towel: one in three in the colour of the style's covers."""
     name = one_of(rng, TERRY)
     color = finishes.soft.color if rng.random() < 0.33 else COLORS[name]
-    return Finish("terry", shade(rng, color, 0.08), 0.95, pattern="boucle", density=150)
+    return Finish("terry", tint(rng, color, 0.08), 0.95, pattern="boucle", density=150)
 
 
 def towel(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -215,7 +215,7 @@ def folded_towels(rng: np.random.Generator, form: str, w: float, d: float, h: fl
 def throw(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a folded blanket with fringes at one side."""
     pattern = pick(rng, "knit check stripe boucle")
-    cloth = Finish("throw", shade(rng, finishes.second.color, 0.1), 0.95, pattern=pattern, density=120)  # type: ignore[arg-type]
+    cloth = Finish("throw", tint(rng, finishes.second.color, 0.1), 0.95, pattern=pattern, density=120)  # type: ignore[arg-type]
     layers = [cushion(around(w / 2), (-d / 2 + 0.04, d / 2), z, 0.4 * h / 3, 2) for z in split((0.0, h), 3)]
     yarn = replace(cloth, name="yarn", pattern="plain")
     xs = np.linspace(-w / 2 + 0.02, w / 2 - 0.032, 12).tolist()
@@ -241,7 +241,7 @@ def bath_mat(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
 def blind(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a blind: a roller with its cloth, a pleated Roman one, or slats; the back is at the wall (+y)."""
     color = COLORS[pick(rng, "cream_cloth linen grey_cloth snow_cloth taupe_cloth")]
-    cloth = Finish("blind", shade(rng, color, 0.06), 0.9, pattern="weave", density=300)
+    cloth = Finish("blind", tint(rng, color, 0.06), 0.9, pattern="weave", density=300)
     top = h - 0.05
     rail = box(around(w / 2), around(d / 2), (top, h), 0.004)
     if form == "roller":
