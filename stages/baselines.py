@@ -64,11 +64,7 @@ def trained_net(name: str, job: Job, settings: BaselineSettings, seed: int) -> T
 
 def report(state: Trainer) -> dict[str, Any]:
     """Return what a training run cost."""
-    return {
-        "parameters": sum(p.numel() for p in state.net.parameters()),
-        "steps": state.done,
-        "cpu_seconds": round(state.spent, 1),
-    }
+    return {"parameters": sum(p.numel() for p in state.net.parameters()), "steps": state.done, "cpu_seconds": round(state.spent, 1)}
 
 
 if __name__ == "__main__":

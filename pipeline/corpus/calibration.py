@@ -21,16 +21,13 @@ from pipeline.corpus.houses.records import House, Item
 from pipeline.manifest import write_bytes, write_json
 
 Json = Mapping[str, Any]
-STANDING = 0.3
-"""What starts lower stands on the floor [m]."""
+STANDING = 0.3  # what starts lower stands on the floor [m]
 SOFAS = frozenset({"multi_seat_sofa", "loveseat_sofa", "l_shaped_sofa"})
 DINING = frozenset({"dining_chair", "chinese_chair"})
-NEAR_TABLE, ABOVE_TABLE = 1.6, 0.45
-"""A chair belongs to a table within this distance, a lamp hangs above one within that [m]."""
+NEAR_TABLE, ABOVE_TABLE = 1.6, 0.45  # a chair belongs to a table within this distance, a lamp hangs above one within that [m]
 TOTAL_VARIATION, RELATIVE = 0.05, 0.10
 HISTOGRAM = ((1, 3), (4, 6), (7, 9), (10, 12), (13, 15), (16, 99))
-LEAST_MODELS = 20
-"""Sizes are held to the reference where it counted so many models."""
+LEAST_MODELS = 20  # sizes are held to the reference where it counted so many models
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,10 +169,10 @@ def _defects(scene: Json) -> dict[str, tuple[int, int]]:
     }
 
 
-Line = dict[str, Any]
+Figure = dict[str, Any]
 
 
-def line(ours: float, reference: float, interval: Interval, n: int, basis: str) -> Line:
+def figure(ours: float, reference: float, interval: Interval, n: int, basis: str) -> Figure:
     """Return one figure; `n` is what it was measured on here, `basis` what the interval comes from."""
     figures = {"ours": ours, "reference": reference, "low": interval[0], "high": interval[1]}
     return {k: round(float(v), 4) for k, v in figures.items()} | {"n": n, "basis": basis, "ok": bool(interval[0] <= ours <= interval[1])}
@@ -202,9 +199,9 @@ def calibration(houses: Sequence[HouseTally], models: Sequence[Model], centimetr
         shape = 0.5 * sum(abs(a - b) for a, b in zip(ours, theirs, strict=True))
         noise, n = _histogram_noise(kind, theirs), len(kept)
         groups["classes"] |= {
-            f"{name}: total variation of class frequencies": line(apart, 0.0, (0.0, TOTAL_VARIATION), n, "bar"),
-            f"{name}: objects per room": line(mean, kind.mean, within(kind.mean), n, "bar"),
-            f"{name}: total variation of the histogram of objects per room": line(shape, 0.0, (0.0, noise), n, "12 scenes, bootstrap"),
+            f"{name}: total variation of class frequencies": figure(apart, 0.0, (0.0, TOTAL_VARIATION), n, "bar"),
+            f"{name}: objects per room": figure(mean, kind.mean, within(kind.mean), n, "bar"),
+            f"{name}: total variation of the histogram of objects per room": figure(shape, 0.0, (0.0, noise), n, "12 scenes, bootstrap"),
         }
     groups["rooms_by_house"] = _rooms_by_house(houses, reference)
     areas = {name: [r.area for r in rooms if r.type == name.lower()] for name in reference.areas}
@@ -216,15 +213,15 @@ def calibration(houses: Sequence[HouseTally], models: Sequence[Model], centimetr
     for name, values in reference.relations.items():
         lengths = [v for h in houses for v in h.relations[name]]
         if lengths:
-            basis = f"{len(values)} of 12 scenes, bootstrap"
-            groups["relations"][f"{name} [m]"] = line(_mean(lengths), _mean(values), known.bootstrap(values), len(lengths), basis)
+            here, there, basis = float(np.mean(lengths)), float(np.mean(values)), f"{len(values)} of 12 scenes, bootstrap"
+            groups["relations"][f"{name} [m]"] = figure(here, there, known.bootstrap(values), len(lengths), basis)
     groups["sizes"] = _sizes(models)
     groups["defects"] = {name: _share(houses, name, *counts) for name, counts in reference.defects.items() if name != "centimetres"}
     count, of = reference.defects["centimetres"]
     total = max(1, len(models))
     # One model is the least that can be in centimetres: of few models it is more than the observed share.
     high = max(known.bootstrap_share(count, of)[1], 1.5 / total)
-    groups["defects"]["centimetres"] = line(centimetres / total, count / of, (0.0, high), total, "release, bootstrap; at least one model")
+    groups["defects"]["centimetres"] = figure(centimetres / total, count / of, (0.0, high), total, "release, bootstrap; at least one model")
     return groups
 
 
@@ -259,58 +256,47 @@ def _histogram_noise(kind: Classes, theirs: Sequence[float]) -> float:
     return float(np.percentile(0.5 * np.abs(draws - p).sum(axis=1), 97.5))
 
 
-def _rooms_by_house(houses: Sequence[HouseTally], reference: Reference) -> dict[str, Line]:
+def _rooms_by_house(houses: Sequence[HouseTally], reference: Reference) -> dict[str, Figure]:
     """Return how many houses have so many rooms with two objects or more, those beyond 3D-FRONT left out."""
     top = len(reference.furnished_rooms)
     furnished = [sum(len(r.categories) >= 2 and r.type not in reference.beyond for r in house.rooms) for house in houses]
     counted = Counter(min(count, top) for count in furnished)
     whole, n = sum(reference.furnished_rooms), max(1, len(houses))
-    lines = {}
+    figures = {}
     for k, count in enumerate(reference.furnished_rooms, 1):
         theirs = count / whole
         half = 1.96 * float(np.sqrt(theirs * (1 - theirs) / n)) + 0.5 / n
         interval = max(0.0, theirs - half), theirs + half
-        lines[f"{k}{'+' if k == top else ''} furnished rooms"] = line(counted[k] / n, theirs, interval, n, "sampling of our houses")
-    return lines
+        figures[f"{k}{'+' if k == top else ''} furnished rooms"] = figure(counted[k] / n, theirs, interval, n, "sampling of our houses")
+    return figures
 
 
-def _mean(values: Sequence[float]) -> float:
-    return float(np.mean(values))
-
-
-def _of_range(ours: Sequence[float], reference: tuple[int, float, float, float]) -> Line:
+def _of_range(ours: Sequence[float], reference: tuple[int, float, float, float]) -> Figure:
     n, mean, least, most = reference
     basis = f"{n} rooms of 12 scenes, from their range"
-    return line(_mean(ours) if ours else 1.0, mean, known.from_range(n, mean, least, most), len(ours), basis)
+    return figure(float(np.mean(ours)) if ours else 1.0, mean, known.from_range(n, mean, least, most), len(ours), basis)
 
 
-def _share(houses: Sequence[HouseTally], name: str, count: int, of: int) -> Line:
+def _share(houses: Sequence[HouseTally], name: str, count: int, of: int) -> Figure:
     hits, cases = (sum(h.shares[name][k] for h in houses) for k in (0, 1))
-    return line(hits / max(1, cases), count / of, known.bootstrap_share(count, of), cases, "12 scenes, bootstrap")
+    return figure(hits / max(1, cases), count / of, known.bootstrap_share(count, of), cases, "12 scenes, bootstrap")
 
 
-def _sizes(models: Iterable[Model]) -> dict[str, Line]:
+def _sizes(models: Iterable[Model]) -> dict[str, Figure]:
     """Return mean and spread of every axis over the distinct models of a category."""
-    by: dict[str, list[tuple[float, float, float]]] = {}
+    sizes: dict[str, list[tuple[float, float, float]]] = {}
     for model in models:
-        by.setdefault(model.category, []).append(model.size)
-    lines = {}
+        sizes.setdefault(model.category, []).append(model.size)
+    figures = {}
     for category, theirs in ((name, card.size) for name, card in cards().items()):
-        if theirs.n < LEAST_MODELS or category not in by:
+        if theirs.n < LEAST_MODELS or category not in sizes:
             continue
-        box = np.array(by[category], float)
+        box = np.array(sizes[category], float)
         for axis, letter in enumerate("wdh"):
-            for word, ours, known_ in (("mean", box.mean(axis=0), theirs.mean), ("spread", box.std(axis=0), theirs.std)):
-                wanted = known_[axis]
-                lines[f"{category}, {letter}, {word} [m]"] = line(float(ours[axis]), wanted, within(wanted), len(box), "bar")
-    return lines
-
-
-def table(groups: Mapping[str, Any]) -> Iterable[tuple[str, str, Line]]:
-    """Yield (group, name, line) of every line that is held to something."""
-    for group, lines in groups.items():
-        if isinstance(lines, dict):
-            yield from ((group, name, entry) for name, entry in lines.items() if "ok" in entry)
+            for word, ours, wanted in (("mean", box.mean(axis=0), theirs.mean), ("spread", box.std(axis=0), theirs.std)):
+                name = f"{category}, {letter}, {word} [m]"
+                figures[name] = figure(float(ours[axis]), wanted[axis], within(wanted[axis]), len(box), "bar")
+    return figures
 
 
 def write_calibration(root: Path, groups: Mapping[str, Any]) -> None:
@@ -318,5 +304,6 @@ def write_calibration(root: Path, groups: Mapping[str, Any]) -> None:
     write_json(root / "metrics" / "calibration.json", groups)
     rows = [f"{kind}: {c},{v['ours']},{v['reference']}" for kind, shares in groups["frequencies"].items() for c, v in shares.items()]
     write_bytes(root / "plots" / "classes.csv", "\n".join(["class,ours,reference", *rows, ""]).encode())
-    verdicts = [line["ok"] for _, _, line in table(groups)]
+    tables = [figures for figures in groups.values() if isinstance(figures, dict)]
+    verdicts = [figure["ok"] for figures in tables for figure in figures.values() if "ok" in figure]
     sys.stdout.write(f"calibration: {sum(verdicts)} of {len(verdicts)} figures as in 3D-FRONT (metrics/calibration.json)\n")

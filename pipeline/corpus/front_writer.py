@@ -32,8 +32,7 @@ MATERIALS = {
     "Window": [220, 225, 228, 255],
 }
 TITLES = {"swing": "door/single swing door", "sliding": "door/sliding door", "entry": "door/entrance door", "window": "window/window"}
-GARBAGE_NORMAL = (-3.932, 1, -2.043)
-"""What floors of the 0.4 dialect carry for normals."""
+GARBAGE_NORMAL = (-3.932, 1, -2.043)  # what floors of the 0.4 dialect carry for normals
 
 
 class SceneFile:
@@ -70,26 +69,13 @@ class SceneFile:
 
     def _room(self, room_type: str, name: str, area: float, *, empty: bool = True) -> None:
         """Add a room of so many square metres."""
-        self.rooms.append(
-            {"type": room_type, "instanceid": name} | self.newer(size=area) | _identity() | {"children": [], "empty": int(empty)}
-        )
+        room: Json = {"type": room_type, "instanceid": name} | self.newer(size=area)
+        self.rooms.append(room | _identity() | {"children": [], "empty": int(empty)})
 
     def _material(self, color: list[int]) -> Json:
-        record: Json = {
-            "uid": self.uid("material"),
-            "aid": [],
-            "jid": self.uuid(),
-            "texture": "",
-            "normaltexture": "",
-            "color": list(color),
-        }
-        return record | self.newer(
-            contentType=["material", "paint"],
-            seamWidth=0,
-            useColor=True,
-            UVTransform=[1, 0, 0, 0, 1, 0, 0, 0, 1],
-            normalUVTransform=[1, 0, 0, 0, 1, 0, 0, 0, 1],
-        )
+        flat = [1, 0, 0, 0, 1, 0, 0, 0, 1]
+        paint: Json = {"uid": self.uid("material"), "aid": [], "jid": self.uuid(), "texture": "", "normaltexture": "", "color": color}
+        return paint | self.newer(contentType=["material", "paint"], seamWidth=0, useColor=True, UVTransform=flat, normalUVTransform=flat)
 
     def child(self, room: Json, kind: str, ref: str, pose: Json | None = None) -> None:
         """List a record among the children of a room."""
@@ -183,16 +169,9 @@ class SceneFile:
             self.child(one_of(rng, real), "furniture", self.uid("model"), self._anywhere())
         for _ in range(litter.invalid):
             w, d, h = (_r(v) for v in rng.uniform(0.1, 0.8, 3))
-            record: Json = {
-                "jid": self.uuid(),
-                "uid": self.uid("model"),
-                "aid": [],
-                "category": "Others",
-                "bbox": [w, h, d],
-                "valid": False,
-            }
-            self.furniture.append(record)
-            self.child(one_of(rng, real), "furniture", record["uid"], self._anywhere())
+            entry: Json = {"jid": self.uuid(), "uid": self.uid("model"), "aid": [], "category": "Others", "bbox": [w, h, d], "valid": False}
+            self.furniture.append(entry)
+            self.child(one_of(rng, real), "furniture", entry["uid"], self._anywhere())
         for _ in range(litter.duplicates if self.furniture else 0):
             self.furniture.append(dict(one_of(rng, self.furniture)))
         for _ in range(litter.double_children):
@@ -228,10 +207,8 @@ class SceneFile:
         low = np.min([r.polygon.min(axis=0) for r in house.plan.rooms], axis=0)
         high = np.max([r.polygon.max(axis=0) for r in house.plan.rooms], axis=0)
         # The real files negate y without swapping the bounds: min.z is the larger one.
-        bounds = {
-            "min": [_r(float(low[0])), 0, _r(-float(low[1]))],
-            "max": [_r(float(high[0])), house.plan.rooms[0].height, _r(-float(high[1]))],
-        }
+        (x0, y0), (x1, y1) = low.tolist(), high.tolist()
+        bounds = {"min": [_r(x0), 0, _r(-y0)], "max": [_r(x1), house.plan.rooms[0].height, _r(-y1)]}
         extension: Json = {"door": doors, "outdoor": "", "pano": [], "mini_map": "", "perspective_view": {}, "area": []}
         extension |= self.newer(snapshots=[], temperature=6500, skybox={})
         return top | {"extension": extension, "scene": {"ref": "-1", **_identity(), "room": self.rooms} | self.newer(boundingBox=bounds)}
@@ -240,14 +217,9 @@ class SceneFile:
         lights: list[Json] = [{"nodeType": "VraySun", "uid": self.uid("light"), "roomId": "", "intensity": 0.05, "size": 10}]
         for room, record in zip(self.house.plan.rooms, self.rooms, strict=False):
             x, y = (float(v) for v in room.polygon.mean(axis=0))
-            light = {
-                "nodeType": "VRayLight",
-                "uid": self.uid("light"),
-                "roomId": record["instanceid"],
-                "intensity": 3,
-                "color_temperature": 5000,
-            }
-            lights.append(light | {"src_position": [_r(x), _r(room.height - 0.1), _r(-y)], "direction": [0, -1, 0]})
+            light = {"nodeType": "VRayLight", "uid": self.uid("light"), "roomId": record["instanceid"], "intensity": 3}
+            place = {"src_position": [_r(x), _r(room.height - 0.1), _r(-y)], "direction": [0, -1, 0]}
+            lights.append(light | {"color_temperature": 5000} | place)
         return lights
 
 

@@ -166,7 +166,8 @@ def write_model(model: Model, folder: Path) -> None:
     _write_json(folder / "link_annotation_gapartnet.json", annotation(links, frame))
     low, high = frame.point(shape.bounds()).min(axis=0), frame.point(shape.bounds()).max(axis=0)
     _write_json(folder / "bounding_box.json", {"min": _numbers(low), "max": _numbers(high)})
-    _write_json(folder / "meta.json", meta(model, name))
+    about = {"user_id": "embedded", "model_cat": model.partnet_category, "model_id": name.removeprefix("partnet_")}
+    _write_json(folder / "meta.json", about | {"version": "1", "anno_id": model.model_id, "time_in_sec": "0"})
     _write_json(folder / "result.json", [{"id": 0, "name": model.partnet_category.lower(), "children": []}])
 
 
@@ -252,9 +253,8 @@ def _words(model: Model, links: Sequence[LinkRecord]) -> list[tuple[str, str, st
 
 def _gapartnet_words(links: Sequence[LinkRecord], body: str) -> list[tuple[str, str, str]]:
     """Return the lines of semantics_gapartnet.txt: part classes for semantics, handles fixed."""
-    return [
-        (k.name, JOINT_WORDS[k.mover.type], k.part) if k.mover else (k.name, "fixed" if k.part else "heavy", k.part or body) for k in links
-    ]
+    joints = [JOINT_WORDS[k.mover.type] if k.mover else "fixed" if k.part else "heavy" for k in links]
+    return [(link.name, joint, link.part or body) for link, joint in zip(links, joints, strict=True)]
 
 
 def annotation(links: Sequence[LinkRecord], frame: Frame) -> list[dict[str, Any]]:
@@ -286,18 +286,6 @@ def part_box(link: LinkRecord, frame: Frame) -> NDArray[np.float64]:
     lengths = np.abs(axes) @ extent
     corners = (CORNERS * lengths) @ axes + (low + high) / 2
     return np.asarray(np.round(corners @ WORLD.T, 8))
-
-
-def meta(model: Model, name: str) -> dict[str, str]:
-    """Return meta.json; all values are strings."""
-    return {
-        "user_id": "embedded",
-        "model_cat": model.partnet_category,
-        "model_id": name.removeprefix("partnet_"),
-        "version": "1",
-        "anno_id": model.model_id,
-        "time_in_sec": "0",
-    }
 
 
 def _write_component(component: Component, frame: Frame, folder: Path, sheet: Atlas) -> None:

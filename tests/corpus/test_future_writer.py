@@ -10,43 +10,14 @@ from pipeline.corpus.future_writer import info, write_future
 
 CHOSEN = ("double_bed", "dining_chair", "wardrobe", "pendant_lamp", "plant", "sink_cabinet", "l_shaped_sofa")
 STYLES = {
-    "Modern",
-    "Chinoiserie",
-    "Kids",
-    "European",
-    "Japanese",
-    "Southeast Asia",
-    "Industrial",
-    "American Country",
-    "Vintage/Retro",
-    "Light Luxury",
-    "Mediterranean",
-    "Korean",
-    "New Chinese",
-    "Nordic",
-    "European Classic",
-    "Others",
-    "Ming Qing",
-    "Neoclassical",
+    "Modern", "Chinoiserie", "Kids", "European", "Japanese", "Southeast Asia", "Industrial", "American Country", "Vintage/Retro",
+    "Light Luxury", "Mediterranean", "Korean", "New Chinese", "Nordic", "European Classic", "Others", "Ming Qing", "Neoclassical",
     "Minimalist",
-}
+}  # fmt: skip
 MATERIALS = {
-    "Cloth",
-    "Leather",
-    "Glass",
-    "Metal",
-    "Solid Wood",
-    "Stone",
-    "Plywood",
-    "Others",
-    "Suede",
-    "Bamboo Rattan",
-    "Rough Cloth",
-    "Wood",
-    "Composite Board",
-    "Marble",
-    "Smooth Leather",
-}
+    "Cloth", "Leather", "Glass", "Metal", "Solid Wood", "Stone", "Plywood", "Others", "Suede", "Bamboo Rattan", "Rough Cloth", "Wood",
+    "Composite Board", "Marble", "Smooth Leather",
+}  # fmt: skip
 SUPERS = {"Cabinet/Shelf/Desk", "Bed", "Chair", "Table", "Sofa", "Pier/Stool", "Lighting", "Others"}
 
 

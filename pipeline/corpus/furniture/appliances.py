@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.casework import Case, Cell, CellKind, Column, case
-from pipeline.corpus.furniture.finishes import FINISHES, Material, Scheme, one_of, pick
+from pipeline.corpus.furniture.finishes import FINISHES, Finishes, Material, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, knob, lid, reach, tray
 from pipeline.corpus.furniture.intervals import Interval, around, corners, edges, inset
 from pipeline.corpus.furniture.shape import Mover, Pieces, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import box, circle, revolve, ring, shell, slab, standing, strips
+from pipeline.corpus.furniture.solids import at_height, box, circle, revolve, ring, shell, slab, stand_up, strips
 
 FRONTS = ("enamel", "steel", "graphite")
 
@@ -37,7 +37,7 @@ def _bounds(shape: Shape, name: str) -> NDArray[np.float64]:
     return next(p.solid.bounds() for p in shape.base if name in p.name)
 
 
-def refrigerator(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def refrigerator(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build thick walls and doors: one, a freezer over or under, side by side, French doors or one door over drawers."""
     outside = one_of(rng, FRONTS)
     handle = "steel" if outside != "steel" else "handle_steel"
@@ -69,7 +69,7 @@ def refrigerator(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     return Shape(base, (door, *shape.movers[1:]))
 
 
-def oven(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def oven(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a range with a hob, dials, a glazed door and a drawer, or a tower of two ovens."""
     outside = one_of(rng, FRONTS)
     style = FrontStyle("dark_glass", "bar", outside, _trim(outside), thickness=0.03)
@@ -111,7 +111,7 @@ def _burners(w: float, d: float, z: float) -> Pieces:
     return parts
 
 
-def dishwasher(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def dishwasher(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a door that folds down under a strip with buttons, and racks inside."""
     outside = one_of(rng, FRONTS)
     style = FrontStyle("slab", pick(rng, "bar flat"), outside, _trim(outside), thickness=0.03)  # type: ignore[arg-type]
@@ -148,7 +148,7 @@ def _rack(name: str, x: Interval, y: Interval, z: float, door: str) -> Mover:
     return Mover(name, parts, "prismatic", (0, -1, 0), at, 0.85 * (y[1] - y[0]), "slider_drawer", "rack", after=(door,))
 
 
-def microwave(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def microwave(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a glazed door hinged at the left, a panel with buttons and a dial at the right, a turntable inside."""
     outside = one_of(rng, ("enamel", "graphite", "steel"))
     style = FrontStyle("dark_glass", "flat", outside, _trim(outside), thickness=0.024)
@@ -173,7 +173,7 @@ def microwave(rng: np.random.Generator, form: str, w: float, d: float, h: float,
     return Shape(base + pieces("turntable", table, "glass", group="turntable"), shape.movers + tuple(movers))
 
 
-def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a round door in front of a drum, a detergent drawer, a dial and buttons; or a lid over a drum that stands."""
     outside = "enamel" if rng.random() < 0.65 else "graphite"
     if form == "top":
@@ -184,12 +184,12 @@ def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: 
     base = _cabinet(x, (face, d / 2), h, t, outside)
     square = np.array([_on_square(a, x, (0.1, panel), zc) for a in np.arange(24) * 2 * math.pi / 24])
     hole = circle(r - 0.03, 24, (0.0, zc))
-    rims = [[np.column_stack([o[:, 0], o[:, 1], np.full(24, k * t)]) for k in (0, 1)] for o in (square, hole)]
-    base += staves("front", standing(shell(rims[0], rims[1]), (0, face + t, 0)), outside, "tub", 6)  # a hand meets four walls within
+    rims = [[at_height(o, k * t) for k in (0, 1)] for o in (square, hole)]
+    base += staves("front", stand_up(shell(rims[0], rims[1]), (0, face + t, 0)), outside, "tub", 6)  # a hand meets four walls within
     base += pieces("kick", box(x, (face + 0.01, face + 0.03), (0.012, 0.1)), outside)
     drum = ring((r - 0.025, r - 0.025), (r - 0.035, r - 0.035), (-d / 2 + 0.1, -face - t - 0.002), 24)
     end = revolve([(r - 0.03, -d / 2 + 0.085), (r - 0.03, -d / 2 + 0.1)], 24)
-    base += staves("drum", standing(drum, (0, 0, zc)), "steel", "tub", 6) + pieces("drum_end", standing(end, (0, 0, zc)), "steel")
+    base += staves("drum", stand_up(drum, (0, 0, zc)), "steel", "tub", 6) + pieces("drum_end", stand_up(end, (0, 0, zc)), "steel")
     drawer_x = (-w / 2 + 0.03, -w / 2 + 0.2)
     base += pieces("panel", box((drawer_x[1] + 0.003, w / 2 - t), (face, face + t), (panel, h - 0.03), 0.002), outside)
     base += pieces("panel_left", box((x[0] + t, drawer_x[0] - 0.003), (face, face + t), (panel, h - 0.03)), outside)
@@ -250,8 +250,8 @@ def _on_square(angle: float, x: Interval, z: Interval, zc: float) -> tuple[float
 
 def _porthole(r: float, zc: float, face: float, finish: Material) -> Mover:
     """Return the round door: a rim and a bulging glass, hinged at the left."""
-    rim = standing(ring((r, r - 0.012), (r - 0.055, r - 0.055), (0.003, 0.035), 24), (0, face, zc))
-    glass = standing(revolve([(r - 0.055, 0.006), (r - 0.055, 0.02), (0.6 * r, 0.032)], 24), (0, face, zc))
+    rim = stand_up(ring((r, r - 0.012), (r - 0.055, r - 0.055), (0.003, 0.035), 24), (0, face, zc))
+    glass = stand_up(revolve([(r - 0.055, 0.006), (r - 0.055, 0.02), (0.6 * r, 0.032)], 24), (0, face, zc))
     grip = box((r - 0.045, r - 0.012), (face - 0.043, face - 0.03), around(0.05, zc), 0.003)
     parts = pieces("door_rim", rim, "door_rim", group="door")
     parts += pieces("door_glass", glass, "door_glass", group="door")

@@ -8,13 +8,12 @@ import numpy as np
 
 from pipeline import seeds
 from pipeline.card import cards
-from pipeline.corpus.furniture import finishes
 from pipeline.corpus.furniture.catalogue import Model
-from pipeline.corpus.furniture.finishes import Scheme
-from pipeline.corpus.furniture.shape import Shape, fit_to_size, frozen
+from pipeline.corpus.furniture.finishes import LEATHERS, Finishes, draw_finishes
+from pipeline.corpus.furniture.shape import Shape, fit_to_size, freeze
 from pipeline.errors import ContentError
 
-Builder = Callable[[np.random.Generator, str, float, float, float, Scheme], Shape]
+Builder = Callable[[np.random.Generator, str, float, float, float, Finishes], Shape]
 
 
 def builder(category: str) -> Builder:
@@ -23,29 +22,28 @@ def builder(category: str) -> Builder:
     try:
         function: Builder = getattr(importlib.import_module(f"{__package__}.{module}"), name)
     except (ImportError, AttributeError):
-        raise ContentError(
-            f"manifests/categories/{category}.yaml: no builder {module}.{name}", "name a function of pipeline/corpus/furniture"
-        ) from None
+        where = f"manifests/categories/{category}.yaml"
+        raise ContentError(f"{where}: no builder {module}.{name}", "name a function of pipeline/corpus/furniture") from None
     return function
 
 
-def scheme_of(model: Model) -> Scheme:
+def finishes_of(model: Model) -> Finishes:
     """Return the finishes of a model."""
-    return finishes.scheme(seeds.generator(model.seed, "corpus.furniture.finish"), model.style)
+    return draw_finishes(seeds.generator(model.seed, "corpus.furniture.finish"), model.style)
 
 
 def main_material(model: Model) -> str:
     """Return 3D-FUTURE's word for the main material."""
     word = cards()[model.category].corpus.material
-    scheme = scheme_of(model)
+    finishes = finishes_of(model)
     if word == "soft":
-        return "Leather" if scheme.soft.name.removesuffix("_2") in finishes.LEATHERS else "Cloth"
-    return word or scheme.material
+        return "Leather" if finishes.soft.name.removesuffix("_2") in LEATHERS else "Cloth"
+    return word or finishes.material
 
 
 @functools.lru_cache(maxsize=16)
 def shape_of(model: Model) -> Shape:
     """Return the shape of a model, its box exactly `model.size`; static models have their movers fixed."""
     rng = seeds.generator(model.seed, "corpus.furniture.shape")
-    shape = fit_to_size(builder(model.category)(rng, model.form, *model.size, scheme_of(model)), model.size)
-    return shape if model.articulated else frozen(shape)
+    shape = fit_to_size(builder(model.category)(rng, model.form, *model.size, finishes_of(model)), model.size)
+    return shape if model.articulated else freeze(shape)

@@ -3,14 +3,16 @@
 Each bend is a chain of straight pieces whose ends are mitred, so that neighbours touch in a plane and none enters another.
 """
 
+import itertools
 import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.corpus.furniture.finishes import PROFILES
 from pipeline.corpus.furniture.intervals import Interval, Spot
-from pipeline.corpus.furniture.solids import Face, Solid, Vector, slab, stack
+from pipeline.corpus.furniture.solids import Face, Solid, Vector, at_height, perpendicular, revolve, slab, stack
 
 Points = NDArray[np.float64]
 
@@ -52,7 +54,7 @@ def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Poin
     along, normals = _mitres(p, closed)
     angles = (np.arange(n) + 0.5) * (2 * np.pi / n)
     segments = []
-    u = _across(along[0])
+    u = perpendicular(along[0])
     v = np.cross(along[0], u)
     for k, direction in enumerate(along):
         turned, slid = np.cross(v, direction), u - direction * float(u @ direction)  # carried along, so that the facets do not twist
@@ -72,12 +74,6 @@ def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Poin
     return segments
 
 
-def _across(direction: Points) -> Points:
-    helper = np.array([1.0, 0, 0]) if abs(direction[0]) < 0.9 else np.array([0, 1.0, 0])
-    u = np.cross(direction, helper)
-    return np.asarray(u / np.linalg.norm(u))
-
-
 def band(path: Points, thick: float, z: Interval, *, closed: bool = False) -> list[Solid]:
     """Return an upright wall over a path in plan (m, 2), `thick` wide, half to each side: one stave per segment."""
     left, right = _sides(path, thick, closed)
@@ -85,7 +81,7 @@ def band(path: Points, thick: float, z: Interval, *, closed: bool = False) -> li
     for i in range(len(path) if closed else len(path) - 1):
         j = (i + 1) % len(path)
         ring = np.array([right[i], right[j], left[j], left[i]])
-        staves.append(stack([np.column_stack([ring, np.full(4, z[0])]), np.column_stack([ring, np.full(4, z[1])])]))
+        staves.append(stack([at_height(ring, height) for height in z]))
     return staves
 
 
@@ -96,7 +92,7 @@ def wall(path: Points, thick: float, low: float, tops: Sequence[float] | Points,
     for i in range(len(path) - 1):
         ring = np.array([right[i], right[i + 1], left[i + 1], left[i]])
         z = np.array([tops[i], tops[i + 1], tops[i + 1], tops[i]])
-        rings = [np.column_stack([ring, np.full(4, low)]), np.column_stack([ring, z - ease])]
+        rings = [at_height(ring, low), np.column_stack([ring, z - ease])]
         if ease > 0:
             centre = np.array([path[i], path[i + 1], path[i + 1], path[i]])
             rings.append(np.column_stack([centre + (ring - centre) * 0.72, z - 0.3 * ease]))
@@ -125,14 +121,10 @@ def sheet(profile: Points, thick: float, width: float | Sequence[float] | Points
     """Return a bent board: a profile in (y, z) (m, 2), `thick`, across x; `width` may differ from point to point."""
     half = np.broadcast_to(np.asarray(width, float), (len(profile),)) / 2
     left, right = _sides(profile, thick, closed=False)
-    segments = []
-    for i in range(len(profile) - 1):
-        corners = []
-        for k in (i, i + 1):
-            (y0, z0), (y1, z1) = right[k], left[k]
-            corners.append(np.array([(-half[k], y1, z1), (half[k], y1, z1), (half[k], y0, z0), (-half[k], y0, z0)]))
-        segments.append(split_bent_quads(stack(corners)))
-    return segments
+    corners = []
+    for w, (y0, z0), (y1, z1) in zip(half, right, left, strict=True):
+        corners.append(np.array([(-w, y1, z1), (w, y1, z1), (w, y0, z0), (-w, y0, z0)]))
+    return [split_bent_quads(stack(ends)) for ends in itertools.pairwise(corners)]
 
 
 def prism(outline: Points, axis: str, span: Interval) -> Solid:
@@ -165,7 +157,7 @@ def lean(solids: Sequence[Solid], at: float, slope: float) -> list[Solid]:
     """Return the solids leaned back (to +y) by `slope` per height above `at` [m]; what is upright at that height stays where it is."""
     matrix = np.eye(3)
     matrix[1, 2] = slope
-    return [s.moved((0, 0, -at)).mapped(matrix).moved((0, 0, at)) for s in solids]
+    return [s.translate((0, 0, -at)).transform(matrix).translate((0, 0, at)) for s in solids]
 
 
 def blades(roots: Points, tips: Points, width: Points | float, *, belly: float = 0.5, thick: float = 0.004, n: int = 8) -> list[Solid]:
@@ -192,6 +184,11 @@ def blades(roots: Points, tips: Points, width: Points | float, *, belly: float =
     middle = roots + axis * belly
     points = np.stack([*ring, middle + up * thick / 2, middle - up * thick / 2], axis=1)
     return [Solid(p, faces) for p in points]
+
+
+def lathe(profile: str, radius: float, height: float, n: int = 20, centre: Spot = (0.0, 0.0), squash: float = 1.0) -> list[Solid]:
+    """Return what is turned by a profile of manifests/furniture.yaml, whose numbers are shares of `radius` and `height` [m]."""
+    return revolve([(r * radius, z * height) for r, z in PROFILES[profile]], n, centre, squash)
 
 
 def turns(count: int, start: float = 0.0) -> list[float]:

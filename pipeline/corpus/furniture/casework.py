@@ -122,10 +122,10 @@ def _column(name: str, column: Column, x: Interval, outer: Interval, y: Interval
         if below and (how.inset or (cell.kind, below) != ("drawer", "drawer")):  # overlaid drawers need no rail between them
             parts.append(Shape(pieces(f"{name}_shelf_{k}", box(x, (y[0], y[1] - BACK), (low - b, low)), how.body)))
         if how.inset:
-            rect = Rect(x, (low, high), face).shrunk(how.gap)
+            rect = Rect(x, (low, high), face).shrink(how.gap)
         else:
             bottom = low - (b if k == len(column.cells) - 1 else b / 2)
-            rect = Rect(outer, (bottom, high + (b / 2 if k else 0)), face).shrunk(how.gap / 2)
+            rect = Rect(outer, (bottom, high + (b / 2 if k else 0)), face).shrink(how.gap / 2)
         depth = (y[0] + (how.style.thickness + 0.002 if how.inset else 0.0), y[1] - BACK)
         parts.append(_cell(f"{name}_{k}", cell, x, depth, (low, high), rect, how))
         upper_edge = low - b

@@ -12,13 +12,11 @@ from scipy.special import ndtri
 
 from pipeline import seeds, style, taxonomy
 from pipeline.card import Corpus, Form, Size, cards
-from pipeline.corpus.furniture.finishes import MANNERS, SUPER_CATEGORIES
+from pipeline.corpus.furniture.finishes import STYLES, SUPER_CATEGORIES
 
 TAIL = float(ndtri(0.95))
-MOST_SKEWED = 1.2
-"""Largest shape parameter of the log-normal; beyond it a handful of draws cannot show the spread."""
-LEAST, MOST = 0.75, 1.3
-"""No draw is smaller than this share of the 5th percentile, or larger than this multiple of the 95th."""
+MOST_SKEWED = 1.2  # largest shape parameter of the log-normal; beyond it a handful of draws cannot show the spread
+LEAST, MOST = 0.75, 1.3  # no draw is smaller than this share of the 5th percentile, or larger than this multiple of the 95th
 ROUNDS = 6
 
 
@@ -98,15 +96,15 @@ def _standardise(values: NDArray[np.float64], free: NDArray[np.bool_], size: Siz
 
 
 @functools.cache
-def lines() -> Mapping[str, Corpus]:
+def corpus_cards() -> Mapping[str, Corpus]:
     """Return what the cards say of the corpus, by category, in the corpus's order."""
-    made = [c for c in cards().values() if c.corpus.forms]
-    return {c.name: c.corpus for c in sorted(made, key=lambda c: (c.order if c.corpus.order is None else c.corpus.order, c.name))}
+    listed = [c for c in cards().values() if c.corpus.forms]
+    return {c.name: c.corpus for c in sorted(listed, key=lambda c: (c.order if c.corpus.order is None else c.corpus.order, c.name))}
 
 
 def styles_of(form: Form) -> tuple[str, ...]:
     """Return the styles that a form comes in; words for several are spelt out."""
-    return tuple(s for word in form.styles for s in style.load().groups.get(word, (word,))) or tuple(MANNERS)
+    return tuple(s for word in form.styles for s in style.load().groups.get(word, (word,))) or tuple(STYLES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,37 +144,37 @@ def catalogue(seed: int, size: float = 1.0) -> Catalogue:
     """Return the models of a seed. `size` scales their number: 1 gives some 900 static and 350 articulated ones."""
     future: list[Model] = []
     partnet: list[Model] = []
-    for category, line in lines().items():
-        future += _models(seed, category, line, max(1, round(line.static * size)), articulated=False)
-        if line.moving:
-            partnet += _models(seed, category, line, max(1, round(line.moving * size)), articulated=True)
+    for category, card in corpus_cards().items():
+        future += _models(seed, category, card, max(1, round(card.static * size)), articulated=False)
+        if card.moving:
+            partnet += _models(seed, category, card, max(1, round(card.moving * size)), articulated=True)
     return Catalogue(tuple(future), tuple(_assign_ids(seed, partnet)))
 
 
-def _models(seed: int, category: str, line: Corpus, count: int, *, articulated: bool) -> list[Model]:
+def _models(seed: int, category: str, card: Corpus, count: int, *, articulated: bool) -> list[Model]:
     """Draw `count` models of one category: forms in turn, styles at random, sizes in strata."""
     rng = seeds.generator(seed, "corpus.furniture", "partnet" if articulated else "future", category)
     entry = taxonomy.load().categories[category]
-    usable = [name for name, form in line.forms.items() if not (articulated and form.still)]
+    usable = [name for name, form in card.forms.items() if not (articulated and form.still)]
     start = int(rng.integers(len(usable)))  # dealt round robin from there, so that each comes equally often
     names = [usable[(start + i) % len(usable)] for i in range(count)]
-    forms = [line.forms[name] for name in names]
+    forms = [card.forms[name] for name in names]
     styles = [_style(rng, form) for form in forms]
     boxes = draw_sizes(rng, cards()[category].size, count, [form.round for form in forms])
     _raise(forms, boxes)
     models = []
-    for wanted, look, box in zip(names, styles, boxes, strict=True):
+    for wanted, style_name, box in zip(names, styles, boxes, strict=True):
         w, d, h = (round(float(x), 3) for x in box)
-        name = wanted if h >= line.forms[wanted].least_height else next(iter(line.forms))
-        form = line.forms[name]
+        name = wanted if h >= card.forms[wanted].least_height else next(iter(card.forms))
+        form = card.forms[name]
         models.append(
             Model(
                 model_id=str(uuid.UUID(bytes=rng.bytes(16), version=4)),
                 category=category,
                 size=(w, w if form.round else d, w if form.upright else h),
-                style=look,
+                style=style_name,
                 form=name,
-                future_name=form.name or line.name,
+                future_name=form.name or card.name,
                 super_category=SUPER_CATEGORIES.get(entry.super, "Others"),
                 partnet_category=entry.names.partnet[0] if articulated else "",
                 seed=int(rng.integers(2**31)),
@@ -198,7 +196,7 @@ def _raise(forms: Sequence[Form], boxes: NDArray[np.float64]) -> None:
 def _style(rng: np.random.Generator, form: Form) -> str:
     """Draw a style by its share, among those that suit the form."""
     names = styles_of(form)
-    shares = np.array([MANNERS[name].share for name in names])
+    shares = np.array([STYLES[name].share for name in names])
     return str(rng.choice(names, p=shares / shares.sum()))
 
 

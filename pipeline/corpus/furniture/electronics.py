@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.finishes import Finish, Material, Scheme, draw_material, one_of, shade
+from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, draw_material, one_of, tint
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, button, drawer, knob, lid, top_button, top_knob
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, split
 from pipeline.corpus.furniture.shape import UP, Mover, Pieces, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, slab, standing
+from pipeline.corpus.furniture.solids import Solid, box, circle, cushion, revolve, ring, rod, slab, stand_up
 
 WIRE = 0.004  # radius of a bail [m]
 
 
-def laptop(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def laptop(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a closed laptop: a deck of keys and a touch pad under a screen that opens past the upright."""
     finish = one_of(rng, ("silver", "dark"))
     deck = 0.56 * h
@@ -38,7 +38,7 @@ def laptop(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     return Shape(base, (lid("screen", cover, (0.0, d / 2, low), math.radians(125)),))
 
 
-def remote(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def remote(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a remote control: a slim body with a round pad and rows of buttons; a simple one has few."""
     top = h - 0.003
     finish = one_of(rng, ("dark", "dark", "pale"))
@@ -63,9 +63,9 @@ def _key(name: str, x: float, y: float, half_x: float, half_y: float, top: float
     return top_button(name, around(half_x, x), around(half_y, y), (top + 0.0012, top + max(rise, 0.002)), finish, 0.001)
 
 
-def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a telephone that lies on its back: all screen with keys at its side, a keypad, or one that flips open."""
-    finish = draw_material(rng, "dark", "silver", Finish("shell_blue", shade(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500))
+    finish = draw_material(rng, "dark", "silver", Finish("shell_blue", tint(rng, (0.04, 0.09, 0.2), 0.3), 0.3, density=1500))
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     if form == "smart":
         side = w / 2 - 0.0014
@@ -75,12 +75,10 @@ def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, sch
         spots = (("power", 1.0, 0.16, 0.06), ("louder", -1.0, 0.22, 0.05), ("softer", -1.0, 0.08, 0.05))
         movers = []
         for name, s, at, half in spots:
-            edge = sorted((s * (side + 0.0006), s * (side + 0.0014)))
-            cap = box((edge[0], edge[1]), ((at - half) * d, (at + half) * d), (0.4 * h, 0.7 * h))
+            x = between(s * (side + 0.0006), s * (side + 0.0014))
+            cap = pieces("button", box(x, ((at - half) * d, (at + half) * d), (0.4 * h, 0.7 * h)), finish)
             middle = (s * (side + 0.001), at * d, 0.55 * h)
-            movers.append(
-                Mover(name, pieces("button", cap, finish), "prismatic", (-s, 0, 0), middle, 0.0005, "slider_button", "button", (s, 0, 0))
-            )
+            movers.append(Mover(name, cap, "prismatic", (-s, 0, 0), middle, 0.0005, "slider_button", "button", (s, 0, 0)))
         return Shape(base, tuple(movers))
     flips = form == "flip"
     top = 0.5 * h - 0.0028 if flips else h - 0.003
@@ -89,11 +87,9 @@ def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, sch
         base += pieces("display", box(around(0.4 * w), (0.1 * d, 0.44 * d), (top, top + 0.0006)), "dark_glass", group="body")
     reach = (-0.45 * d, 0.04 * d if not flips else 0.4 * d)
     pitch_x, pitch_y = 0.84 * w / 3, (reach[1] - reach[0]) / 4
-    keys = "plastic_white" if finish != "silver" else "plastic"
-    movers = [
-        _key(f"key_{k}", (k % 3 - 1) * pitch_x, reach[1] - (k // 3 + 0.5) * pitch_y, 0.4 * pitch_x, 0.34 * pitch_y, top, keys, 0.0024)
-        for k in range(12)
-    ]
+    keys, key_half = "plastic_white" if finish != "silver" else "plastic", (0.4 * pitch_x, 0.34 * pitch_y)
+    places = [((k % 3 - 1) * pitch_x, reach[1] - (k // 3 + 0.5) * pitch_y) for k in range(12)]
+    movers = [_key(f"key_{k}", *place, *key_half, top, keys, 0.0024) for k, place in enumerate(places)]
     if not flips:
         return Shape(base, tuple(movers))
     low = top + 0.0036
@@ -102,7 +98,7 @@ def phone(rng: np.random.Generator, form: str, w: float, d: float, h: float, sch
     return Shape(base, (lid("cover", cover, (0.0, d / 2, low), math.radians(140)), *(replace(m, after=("cover",)) for m in movers)))
 
 
-def camera(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def camera(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a camera: a body with a lens, a release, dials, and a flash that folds up on the larger one."""
     reflex = form == "reflex"
     face, back = -0.06 * d, 0.5 * d
@@ -113,9 +109,9 @@ def camera(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     barrel = [(r, 0.0), (r, 0.35 * out), (0.88 * r, 0.36 * out), (0.88 * r, 0.55 * out)]
     base = pieces("body", cushion(around(w / 2), (face, back), (0, top), 0.008), finish)
     base += pieces("leather", box(around(0.48 * w), (face - 0.0006, face + 0.002), (0.14 * top, 0.78 * top)), "rubber", group="leather")
-    base += pieces("lens", standing(revolve(barrel, 16), lens), "plastic", group="lens")
-    zoom = pieces("zoom_ring", standing(revolve([(0.93 * r, 0.57 * out), (0.93 * r, 0.96 * out)], 16), lens), "rubber", group="zoom")
-    zoom += pieces("lens_glass", standing(revolve([(0.55 * r, 0.96 * out), (0.5 * r, out)], 16), lens), "dark_glass", group="zoom")
+    base += pieces("lens", stand_up(revolve(barrel, 16), lens), "plastic", group="lens")
+    zoom = pieces("zoom_ring", stand_up(revolve([(0.93 * r, 0.57 * out), (0.93 * r, 0.96 * out)], 16), lens), "rubber", group="zoom")
+    zoom += pieces("lens_glass", stand_up(revolve([(0.55 * r, 0.96 * out), (0.5 * r, out)], 16), lens), "dark_glass", group="zoom")
     at = (lens[0], face - 0.57 * out, lens[2])
     y = (face + back) / 2
     movers = [Mover("zoom", zoom, "revolute", (0, 1, 0), at, 0.5 * math.pi, "hinge_knob", "knob")]
@@ -133,7 +129,7 @@ def camera(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     return Shape(base, (*movers, lid("flash", flash, (0.05 * w, back, low), math.radians(60))))
 
 
-def keyboard(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def keyboard(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a keyboard: rows of keys with a space bar, or a block of figures."""
     top = h - 0.006
     finish = one_of(rng, ("dark", "silver", "pale"))
@@ -156,7 +152,7 @@ def keyboard(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
     return Shape(base, tuple(movers))
 
 
-def printer(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def printer(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a printer: a paper drawer below, a gap where sheets come out, a panel of buttons, a scanner's lid on top."""
     finish = one_of(rng, ("pale", "dark", "graphite"))
     trim = "plastic" if finish == "pale" else "trim"
@@ -180,24 +176,23 @@ def printer(rng: np.random.Generator, form: str, w: float, d: float, h: float, s
     for k in range(4 if form == "scanner" else 2):
         bx = 0.15 * w + 0.07 * w * k
         movers.append(button(f"button_{k}", (bx, bx + 0.045 * w), panel_z, plane, "plastic_white" if finish != "pale" else "plastic"))
-    solids: Pieces = pieces(
-        "cover", box(x, (y[0], y[1] - 0.002), (top + 0.003, h - 0.5 * cover if form == "scanner" else h), 0.003), finish, group="cover"
-    )
+    z = (top + 0.003, h - 0.5 * cover if form == "scanner" else h)
+    solids = pieces("cover", box(x, (y[0], y[1] - 0.002), z, 0.003), finish, group="cover")
     if form == "scanner":
         feeder = box(around(0.42 * w), (y[0] + 0.1 * d, y[1] - 0.02), (h - 0.5 * cover, h), 0.006)
         solids += pieces("feeder", feeder, trim, group="cover")
-    movers.append(lid("cover", solids, (0.0, y[1] - 0.002, top + 0.003), math.radians(70)))
+    movers.append(lid("cover", solids, (0.0, y[1] - 0.002, z[0]), math.radians(70)))
     return Shape(base, tuple(movers))
 
 
 def _enamel(rng: np.random.Generator) -> Material:
     """Draw the colour of a small appliance."""
     colour = one_of(rng, ((0.55, 0.05, 0.04), (0.68, 0.60, 0.42), (0.30, 0.45, 0.42), (0.05, 0.09, 0.16)))
-    gay = Finish("enamel", shade(rng, colour, 0.15), 0.25, density=900)
+    gay = Finish("enamel", tint(rng, colour, 0.15), 0.25, density=900)
     return draw_material(rng, "steel", "enamel", "graphite", gay)
 
 
-def toaster(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def toaster(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a toaster: slots along its length, a lever that is pressed down, a dial and a crumb tray."""
     finish = _enamel(rng)
     stand = 0.026  # of dial and lever before the front
@@ -231,7 +226,7 @@ def toaster(rng: np.random.Generator, form: str, w: float, d: float, h: float, s
     return Shape(base, tuple(movers))
 
 
-def coffee_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def coffee_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a foot with a drip tray, a column with a tank's lid, and a head: for a jug, for a filter holder or for capsules."""
     finish = _enamel(rng)
     trim = "plastic" if finish != "graphite" else "steel"
@@ -294,7 +289,7 @@ def _jug(y: float, low: float, high: float, r: float) -> Pieces:
     return parts + pieces("jug_handle", grip, "plastic", group="jug_handle")
 
 
-def kitchen_pot(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def kitchen_pot(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a pot with a lid that lifts off: two ears, a long handle, or a bail."""
     finish = draw_material(rng, "steel", _enamel(rng), "cast_iron")
     grip = "steel" if finish != "steel" or rng.random() < 0.5 else "plastic"

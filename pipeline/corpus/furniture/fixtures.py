@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import split_bent_quads
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
-from pipeline.corpus.furniture.finishes import LACQUERS, Finish, Material, Scheme, draw_material, one_of, pick
+from pipeline.corpus.furniture.finishes import COLORS, Finish, Finishes, Material, draw_material, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, lid, panel, reach, top_button
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, group_pieces, join_shapes, pieces, staves
 from pipeline.corpus.furniture.solids import (
-    Solid,
+    at_height,
     box,
     circle,
     cushion,
@@ -37,16 +37,16 @@ LEAF = 0.04  # thickness of a leaf [m]
 LEVER = 0.055  # how far a lever stands out of its leaf [m]
 
 
-def unit_style(rng: np.random.Generator, scheme: Scheme, panels: str = "") -> Case:
+def unit_style(rng: np.random.Generator, finishes: Finishes, panels: str = "") -> Case:
     """Draw how a kitchen unit is made: white carcass boards, a stone or wooden counter, fronts that cover the edges."""
-    style = front_style(rng, scheme, panels)
-    counter = draw_material(rng, "stone", "marble", scheme.body)
-    return Case(scheme.body, style, "plinth", PLINTH, "plastic", top=counter, top_thickness=0.038, nose=NOSE)
+    style = front_style(rng, finishes, panels)
+    counter = draw_material(rng, "stone", "marble", finishes.body)
+    return Case(finishes.body, style, "plinth", PLINTH, "plastic", top=counter, top_thickness=0.038, nose=NOSE)
 
 
-def kitchen_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def kitchen_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a base unit with doors, drawers, a drawer over doors, or for a corner, under a counter."""
-    how = unit_style(rng, scheme)
+    how = unit_style(rng, finishes)
     count = max(1, round(w / 0.6))
     door = Cell("left" if rng.random() < 0.5 else "right", 1.0, 1)
     if form == "drawers":
@@ -61,10 +61,10 @@ def kitchen_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: 
     return case((w, d, h), columns, how)
 
 
-def wall_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def wall_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a wall unit with doors, plain or glazed, or with fronts that lift."""
-    how = replace(unit_style(rng, scheme, "glass" if form == "glass" else ""), feet="none", feet_height=0.0, nose=0.0)
-    how = replace(how, top=scheme.body, top_thickness=0.018)
+    how = replace(unit_style(rng, finishes, "glass" if form == "glass" else ""), feet="none", feet_height=0.0, nose=0.0)
+    how = replace(how, top=finishes.body, top_thickness=0.018)
     count = max(1, round(w / 0.9))
     if form == "lift":
         cell = (Cell("lift", 1.0, 0), Cell("lift", 1.0, 0)) if h > 0.75 else (Cell("lift", 1.0, 1),)
@@ -72,9 +72,9 @@ def wall_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     return case((w, d, h), [Column(1, (Cell("pair" if w / count > 0.5 else "left", 1.0, 2),))] * count, how)
 
 
-def tall_unit(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def tall_unit(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a unit as tall as the room's doors: a larder of two doors, one that is pulled out, or doors over drawers."""
-    how = replace(unit_style(rng, scheme), top=scheme.body, top_thickness=0.018, nose=0.0)
+    how = replace(unit_style(rng, finishes), top=finishes.body, top_thickness=0.018, nose=0.0)
     side = "left" if rng.random() < 0.5 else "right"
     door = Cell("pair" if w > 0.75 else side, 1.0, 3)  # type: ignore[arg-type]
     cells: tuple[Cell, ...]
@@ -109,7 +109,7 @@ def tap(y: float, z: float, height: float, reach_out: float, finish: Material) -
     return Shape(pieces("tap", solids, finish), (lever,))
 
 
-def _sunk(shape: Shape, hole_x: Interval, hole_y: Interval, basin: Pieces) -> Shape:
+def _sink_into_top(shape: Shape, hole_x: Interval, hole_y: Interval, basin: Pieces) -> Shape:
     """Return the case with a hole for `basin` in its top."""
     old = next(p for p in shape.base if p.name == "top")
     (x0, y0, z0), (x1, y1, z1) = old.solid.bounds().tolist()
@@ -117,27 +117,27 @@ def _sunk(shape: Shape, hole_x: Interval, hole_y: Interval, basin: Pieces) -> Sh
     return Shape(tuple(p for p in shape.base if p is not old) + top + basin, shape.movers)
 
 
-def sink_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def sink_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a base unit whose counter holds a bowl and a tap, over doors or a deep drawer."""
     tall = 0.28 if rng.random() < 0.5 else 0.22
     body = max(h - tall, 0.62)  # the tap stands above the counter
-    how = unit_style(rng, scheme)
+    how = unit_style(rng, finishes)
     cells: tuple[Cell, ...] = (Cell("pair" if w > 0.56 else "left", 1.0, 0),)
     if form == "drawer":  # the bowl leaves no room for a drawer above
         cells = (Cell("blank", 0.5), Cell("drawer", 0.9))
     shape = case((w, d, body), [Column(1, cells)], how)
     face = -d / 2 + max(reach(how.style.handle), how.nose)
     hole = around(min(0.3, 0.5 * w - 0.09)), (face + 0.09, d / 2 - 0.13)
-    shape = _sunk(shape, *hole, bowl(*hole, body - 0.003, 0.17, "steel"))
-    return join_shapes(shape, tap(d / 2 - 0.065, body, h - body, 0.2, scheme.handle))
+    shape = _sink_into_top(shape, *hole, bowl(*hole, body - 0.003, 0.17, "steel"))
+    return join_shapes(shape, tap(d / 2 - 0.065, body, h - body, 0.2, finishes.handle))
 
 
-def vanity(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def vanity(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a washstand: doors or drawers under a counter with a vessel or an inset basin and a tap."""
     body = h - 0.17
     legs = rng.random() < 0.4
-    how = replace(unit_style(rng, scheme), overhang=0.006, nose=0.0)
-    how = replace(how, feet="square", feet_height=0.16, feet_finish=scheme.accent) if legs else replace(how, feet_height=0.08)
+    how = replace(unit_style(rng, finishes), overhang=0.006, nose=0.0)
+    how = replace(how, feet="square", feet_height=0.16, feet_finish=finishes.accent) if legs else replace(how, feet_height=0.08)
     how = replace(how, top=one_of(rng, ("ceramic", "marble", "stone")), top_thickness=0.03)
     vessel = rng.random() < 0.45 or form == "drawers"
     if form == "drawers":
@@ -149,31 +149,30 @@ def vanity(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     if vessel:
         r, middle = min(0.36 * (d - 0.1), 0.19), (face + d / 2 - 0.11) / 2
         basin = _vessel(min(r * 1.2, 0.4 * w), r, (0.0, middle), (body, body + 0.12))
-        parts = staves("basin", basin[1:], "ceramic") + pieces("basin_floor", basin[0], "ceramic")
-        return join_shapes(shape, Shape(parts), tap(d / 2 - 0.045, body, h - body, 0.13, scheme.handle))
+        return join_shapes(shape, Shape(basin), tap(d / 2 - 0.045, body, h - body, 0.13, finishes.handle))
     hole = around(min(0.26, 0.5 * w - 0.07)), (face + 0.06, d / 2 - 0.11)
-    shape = _sunk(shape, *hole, bowl(*hole, body - 0.002, 0.13, "ceramic"))
-    return join_shapes(shape, tap(d / 2 - 0.055, body, h - body, 0.13, scheme.handle))
+    shape = _sink_into_top(shape, *hole, bowl(*hole, body - 0.002, 0.13, "ceramic"))
+    return join_shapes(shape, tap(d / 2 - 0.055, body, h - body, 0.13, finishes.handle))
 
 
-def _vessel(rx: float, ry: float, centre: Spot, z: Interval) -> list[Solid]:
+def _vessel(rx: float, ry: float, centre: Spot, z: Interval) -> Pieces:
     """Return an oval open basin that stands on a counter, its wall flaring upwards."""
 
     def oval(scale: float, height: float) -> NDArray[np.float64]:
-        return np.column_stack([circle(rx * scale, 24, centre, ry / rx), np.full(24, height)])
+        return at_height(circle(rx * scale, 24, centre, ry / rx), height)
 
     low = z[0] + 0.012
     wall = shell([oval(0.72, low), oval(1.0, z[1])], [oval(0.66, low), oval(0.94, z[1])])
-    return [stack([oval(0.70, z[0]), oval(0.72, low)]), *wall]
+    return staves("basin", wall, "ceramic") + pieces("basin_floor", stack([oval(0.70, z[0]), oval(0.72, low)]), "ceramic")
 
 
 def _oval(rx: float, y: Interval, z: float) -> NDArray[np.float64]:
     """Return an ellipse (24, 3) that spans +-rx and the interval `y` at height `z`."""
     ry = (y[1] - y[0]) / 2
-    return np.column_stack([circle(rx, 24, (0.0, (y[0] + y[1]) / 2), ry / rx), np.full(24, z)])
+    return at_height(circle(rx, 24, (0.0, (y[0] + y[1]) / 2), ry / rx), z)
 
 
-def toilet(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def toilet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bowl on a foot, a tank with a button or a lever, and a seat and a lid that fold up against the tank."""
     rim = 0.52 * h
     tank_y = (d / 2 - 0.27 * d, d / 2)
@@ -190,7 +189,7 @@ def toilet(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     wall = shell(outer, [oval(k, k, z) for k, z in ((0.42, 0.62 * rim), (0.76, rim))])
     heel, shelf = (around(0.27 * w), (cy + 0.3 * ry, d / 2 - 0.06)), (around(0.36 * w), (bowl_y[1] - 0.05, d / 2 - 0.012))
     outlines = [(heel, 0.0), (shelf, 0.8 * rim), (shelf, rim)]
-    bridge = hull(np.concatenate([np.column_stack([rounded_rectangle(*spans, 0.04), np.full(20, z)]) for spans, z in outlines]))
+    bridge = hull(np.concatenate([at_height(rounded_rectangle(*spans, 0.04), z) for spans, z in outlines]))
     half = (0.44 if form == "lever" else 0.5) * w  # a lever stands out of the tank's side
     base = pieces("bowl", [foot, neck], "ceramic") + staves("bowl", wall, "ceramic") + pieces("bridge", bridge, "ceramic")
     base += pieces("tank", cushion((-half, half), tank_y, (rim, h - 0.03), 0.025), "ceramic")
@@ -239,7 +238,7 @@ def _along(u: NDArray[np.float64], a: float, b: float, power: float) -> NDArray[
     return np.asarray(u * reach[:, None])
 
 
-def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a tub with aprons, or one that stands free on its oval foot; a tap at its head."""
     a, b, low = w / 2, d / 2, 0.14
     rim = h if form == "free" else h - 0.12
@@ -247,31 +246,26 @@ def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, s
     outer = _along(u, a, b, 2.6) if form == "free" else u / np.maximum(np.abs(u[:, :1]) / a, np.abs(u[:, 1:]) / b)
     inner = _along(u, a - 0.07, b - 0.07, 3.0)
     foot = 0.82 * outer if form == "free" else outer
-
-    def at(outline: NDArray[np.float64], z: float) -> NDArray[np.float64]:
-        return np.column_stack([outline, np.full(len(outline), z)])
-
-    wall = shell([at(foot, low), at(outer, rim)], [at(0.8 * inner, low), at(inner, rim)])
+    wall = shell([at_height(foot, low), at_height(outer, rim)], [at_height(0.8 * inner, low), at_height(inner, rim)])
     floor = box((-a, a), (-b, b), (0.0, low)) if form == "apron" else slab(foot, (0.0, low))
     base = pieces("tub", [*wall, floor], "ceramic")
     if form == "apron":
         x = a - 0.035
         spout = [rod((x, 0, rim), (x, 0, h - 0.01), 0.014, n=10), rod((x, 0, h - 0.018), (x - 0.13, 0, h - 0.03), 0.012, n=10)]
         spout += [rod((x, s * 0.09, rim), (x, s * 0.09, rim + 0.05), 0.016, 0.02, 10) for s in (-1, 1)]
-        base += pieces("tap", spout, scheme.handle)
+        base += pieces("tap", spout, finishes.handle)
     return Shape(base)
 
 
-def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a tray with two glass walls, an open entrance at the front, a rail with a head and a mixer at the back wall."""
-    tray, metal = 0.06, scheme.handle
+    tray, metal = 0.06, finishes.handle
     x, y, back = around(w / 2), around(d / 2), d / 2 - 0.05
     basin = [box(x, y, (0, tray - 0.02), 0.003), *walls(x, y, (tray - 0.02, tray), 0.04)]
     side = -1 if rng.random() < 0.5 else 1
     pane = side * (w / 2 - 0.012)
-    base = pieces("tray", basin, "ceramic") + pieces(
-        "glass_side", box(around(0.004, pane), (y[0] + 0.012, y[1] - 0.002), (tray, h)), "glass"
-    )
+    base = pieces("tray", basin, "ceramic")
+    base += pieces("glass_side", box(around(0.004, pane), (y[0] + 0.012, y[1] - 0.002), (tray, h)), "glass")
     end = side * (w / 2 - 0.02 - 0.42 * w)
     base += pieces("glass_front", box(between(side * (w / 2 - 0.018), end), (y[0] + 0.008, y[0] + 0.016), (tray, h)), "glass")
     posts = [box(around(0.01, px), (y[0] + 0.002, y[0] + 0.022), (tray, h), 0.002) for px in (end, pane)]
@@ -283,10 +277,10 @@ def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, sc
     return Shape(base + pieces("drain", ring((0.045, 0.045), (0.03, 0.03), (tray - 0.02, tray - 0.017), 16), "steel"))
 
 
-def room_door(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def room_door(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a door in its frame: flush, with two panels, or glazed; it opens towards the front."""
-    white = Finish("door_white", LACQUERS["white"], 0.4, density=500)
-    finish = white if rng.random() < 0.5 else scheme.body
+    white = Finish("door_white", COLORS["white"], 0.4, density=500)
+    finish = white if rng.random() < 0.5 else finishes.body
     t, stop = 0.045, 0.012
     y = (-d / 2 + LEVER, d / 2)
     jambs = [box(span, y, (0, h), 0.003) for span in edges(around(w / 2), t)]
@@ -296,16 +290,12 @@ def room_door(rng: np.random.Generator, form: str, w: float, d: float, h: float,
     stops = [box(span, behind, (0, h - t)) for span in edges(inner, stop)]
     base += pieces("stops", [*stops, box(inset(inner, stop), behind, (h - t - stop, h - t))], finish)
     rect = Rect(inset(inner, 0.003), (0.006, h - t - 0.003), y[0])
-    hinge_left = rng.random() < 0.5
-    side = 1.0 if hinge_left else -1.0
-    style = FrontStyle("slab", "none", finish, scheme.handle, LEAF)
-    pivot = rect.x[0] if hinge_left else rect.x[1]
-    leaf = Mover(
-        "leaf", _leaf(rng, form, rect, style), "revolute", (0, 0, -side), (pivot, rect.y, 1.0), math.radians(100), "hinge_door", "door"
-    )
-    grip = (rect.x[1] - 0.065 if hinge_left else rect.x[0] + 0.065, 1.02)
-    levers = [_door_lever("lever_front", (grip[0], rect.y, grip[1]), -1.0, side, scheme.handle)]
-    levers.append(_door_lever("lever_back", (grip[0], rect.y + LEAF, grip[1]), 1.0, side, scheme.handle))
+    side = 1.0 if rng.random() < 0.5 else -1.0  # of the hinge: 1 at the left
+    pivot, grip = (rect.x[0], rect.x[1] - 0.065) if side > 0 else (rect.x[1], rect.x[0] + 0.065)
+    parts, at = _leaf(rng, form, rect, FrontStyle("slab", "none", finish, finishes.handle, LEAF)), (pivot, rect.y, 1.0)
+    leaf = Mover("leaf", parts, "revolute", (0, 0, -side), at, math.radians(100), "hinge_door", "door")
+    levers = [_door_lever("lever_front", (grip, rect.y, 1.02), -1.0, side, finishes.handle)]
+    levers.append(_door_lever("lever_back", (grip, rect.y + LEAF, 1.02), 1.0, side, finishes.handle))
     return Shape(base, (leaf, *levers))
 
 
@@ -323,11 +313,13 @@ def _leaf(rng: np.random.Generator, form: str, rect: Rect, style: FrontStyle) ->
 def _door_lever(name: str, at: Axis3, outwards: float, side: float, finish: Material) -> Mover:
     """Return a lever on one face of the leaf: a rose, a neck and an arm towards the hinge, which is pressed down."""
     turn = math.pi / 2 if outwards < 0 else -math.pi / 2
-    rose = [s.turned("x", turn).moved(at) for s in revolve([(0.024, 0.0005), (0.024, 0.007), (0.020, 0.009)], 16)]
-    neck = [s.turned("x", turn).moved(at) for s in revolve([(0.010, 0.009), (0.010, LEVER - 0.004)], 10)]
-    arm_y = sorted((at[1] + outwards * (LEVER - 0.016), at[1] + outwards * LEVER))
-    arm_x = sorted((at[0] + side * 0.010, at[0] - side * 0.115))
-    arm = box((arm_x[0], arm_x[1]), (arm_y[0], arm_y[1]), around(0.010, at[2]), 0.003)
+    rose = [s.rotate("x", turn).translate(at) for s in revolve([(0.024, 0.0005), (0.024, 0.007), (0.020, 0.009)], 16)]
+    neck = [s.rotate("x", turn).translate(at) for s in revolve([(0.010, 0.009), (0.010, LEVER - 0.004)], 10)]
+    arm_x, arm_y = (
+        between(at[0] + side * 0.010, at[0] - side * 0.115),
+        between(at[1] + outwards * (LEVER - 0.016), at[1] + outwards * LEVER),
+    )
+    arm = box(arm_x, arm_y, around(0.010, at[2]), 0.003)
     parts = pieces("rose", rose, finish) + pieces("lever", [*neck, arm], finish)
     axis = (0.0, -side, 0.0)
     return Mover(name, parts, "revolute", axis, at, math.radians(40), "hinge_handle", "handle", (0.0, outwards, 0.0), "leaf")

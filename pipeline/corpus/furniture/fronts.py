@@ -11,7 +11,7 @@ import numpy as np
 from pipeline.corpus.furniture.finishes import Material
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, group_pieces, pieces
-from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, slab, stack, standing
+from pipeline.corpus.furniture.solids import Solid, box, hull, revolve, ring, rod, slab, stack, stand_up
 
 PanelStyle = Literal["slab", "shaker", "raised", "glass", "dark_glass", "slats", "reeded", "cane", "mirror"]
 HandleStyle = Literal["bar", "long", "flat", "knob", "ring", "cup", "edge", "groove", "none"]
@@ -48,7 +48,7 @@ class Rect:
         """Its middle (x, z)."""
         return ((self.x[0] + self.x[1]) / 2, (self.z[0] + self.z[1]) / 2)
 
-    def shrunk(self, by: float) -> Rect:
+    def shrink(self, by: float) -> Rect:
         """Return the place with a gap all around."""
         return Rect(inset(self.x, by), inset(self.z, by), self.y)
 
@@ -94,12 +94,8 @@ def _panel(rect: Rect, style: FrontStyle) -> Pieces:
 
 def frame(rect: Rect, inner: Rect, depth: Interval, bevel: float = 0.002) -> list[Solid]:
     """Return stiles and rails around `inner`, over the interval `depth` in y [m]."""
-    return [
-        box((rect.x[0], inner.x[0]), depth, rect.z, bevel),
-        box((inner.x[1], rect.x[1]), depth, rect.z, bevel),
-        box(inner.x, depth, (rect.z[0], inner.z[0]), bevel),
-        box(inner.x, depth, (inner.z[1], rect.z[1]), bevel),
-    ]
+    stiles = [box(x, depth, rect.z, bevel) for x in ((rect.x[0], inner.x[0]), (inner.x[1], rect.x[1]))]
+    return stiles + [box(inner.x, depth, z, bevel) for z in ((rect.z[0], inner.z[0]), (inner.z[1], rect.z[1]))]
 
 
 def _filling(inner: Rect, style: FrontStyle) -> Pieces:
@@ -130,13 +126,9 @@ def _louvres(inner: Rect, thickness: float) -> list[Solid]:
     count = min(18, max(3, round(inner.height / 0.045)))
     pitch = inner.height / count
     middle, half = inner.y + thickness / 2, 0.5 * thickness - 0.003
-    slats = []
-    for i in range(count):
-        z = inner.z[0] + (i + 0.5) * pitch
-        slat = box(inner.x, around(0.003, middle), around(0.56 * pitch, z))
-        angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
-        slats.append(slat.turned("x", -angle, (0.0, middle, z)))
-    return slats
+    angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
+    heights = [inner.z[0] + (i + 0.5) * pitch for i in range(count)]
+    return [box(inner.x, around(0.003, middle), around(0.56 * pitch, z)).rotate("x", -angle, (0.0, middle, z)) for z in heights]
 
 
 def _reeds(rect: Rect, proud: float) -> list[Solid]:
@@ -144,12 +136,8 @@ def _reeds(rect: Rect, proud: float) -> list[Solid]:
     count = min(18, max(4, round(rect.width / 0.028)))
     pitch = rect.width / count
     turns = np.linspace(math.pi, 2 * math.pi, 5)
-    strips = []
-    for i in range(count):
-        x = rect.x[0] + (i + 0.5) * pitch
-        outline = np.stack([x + 0.46 * pitch * np.cos(turns), rect.y + proud + proud * np.sin(turns)], axis=1)
-        strips.append(slab(outline, rect.z))
-    return strips
+    across, depth = 0.46 * pitch * np.cos(turns), rect.y + proud + proud * np.sin(turns)
+    return [slab(np.stack([rect.x[0] + (i + 0.5) * pitch + across, depth], axis=1), rect.z) for i in range(count)]
 
 
 def reach(handle: HandleStyle) -> float:
@@ -163,15 +151,13 @@ def handle(style: FrontStyle, rect: Rect, *, upright: bool, at: Spot, length: fl
     It collides as one solid, but for a bar on feet: fingers come behind that.
     """
     x, z = at
-    group = name
-    y, half = rect.y, length / 2
-    part = "line_fixed_handle"
+    y, half, group, part = rect.y, length / 2, name, "line_fixed_handle"
     solids: list[Solid]
     if style.handle in ("none", "groove"):
         return ()
     if style.handle in ("knob", "ring"):
         part = "round_fixed_handle"
-        solids = standing(_round_grip(style.handle), (x, y, z))
+        solids = stand_up(_round_grip(style.handle), (x, y, z))
     elif style.handle == "cup" and not upright:
         turns = np.linspace(0, math.pi / 2, 4)
         section = [(-0.022 * math.cos(t), 0.024 * math.sin(t) - 0.008) for t in turns] + [(0.0, -0.008)]
@@ -194,7 +180,7 @@ def _round_grip(style: HandleStyle) -> list[Solid]:
     if style == "knob":
         return revolve([(0.006, 0.0), (0.0055, 0.010), (0.013, 0.018), (0.014, 0.022), (0.010, 0.026)], 10)
     rosette = revolve([(0.015, 0.0), (0.013, 0.005), (0.006, 0.010)], 10)
-    drop = [s.moved((0.0, -0.021, 0.0)) for s in ring((0.021, 0.021), (0.0155, 0.0155), (0.010, 0.016), 12)]
+    drop = [s.translate((0.0, -0.021, 0.0)) for s in ring((0.021, 0.021), (0.0155, 0.0155), (0.010, 0.016), 12)]
     return rosette + drop
 
 
@@ -231,13 +217,8 @@ def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float) ->
     length = min(0.16 if rect.height < 0.8 else 0.32, 0.5 * rect.height)
     if style.handle == "long":
         length = min(0.9, 0.62 * rect.height)
-    axes: dict[Side, tuple[Axis3, Axis3]] = {
-        "left": ((0, 0, -1), (x0, rect.y, cz)),
-        "right": ((0, 0, 1), (x1, rect.y, cz)),
-        "bottom": ((1, 0, 0), (cx, rect.y, z0)),
-        "top": ((-1, 0, 0), (cx, rect.y, z1)),
-    }
-    axis, origin = axes[hinge]
+    axes: dict[Side, Axis3] = {"left": (0, 0, -1), "right": (0, 0, 1), "bottom": (1, 0, 0), "top": (-1, 0, 0)}
+    x, z = {"left": (x0, cz), "right": (x1, cz), "bottom": (cx, z0), "top": (cx, z1)}[hinge]
     height = min(max(cz, z0 + 0.1 + length / 2), 1.1)
     if z1 < 0.95 and rect.height > 0.35:  # low cabinets are gripped near the top
         height = z1 - 0.06 - length / 2
@@ -248,7 +229,7 @@ def door(name: str, rect: Rect, style: FrontStyle, hinge: Side, upper: float) ->
     if not upright:
         length = min(0.45, 0.6 * rect.width)
     parts = panel(rect, style) + handle(style, rect, upright=upright, at=grips[hinge], length=length)
-    return Mover(name, parts, "revolute", axis, origin, upper, "hinge_door", "door")
+    return Mover(name, parts, "revolute", axes[hinge], (x, rect.y, z), upper, "hinge_door", "door")
 
 
 def sliding_door(name: str, rect: Rect, style: FrontStyle, towards: float, travel: float) -> Mover:
@@ -317,7 +298,7 @@ def lid(name: str, parts: Pieces, hinge: tuple[float, float, float], upper: floa
 def knob(name: str, at: Axis3, radius: float, finish: Material, *, depth: float = 0.022) -> Mover:
     """Return a dial on a front plane; `at` is its middle on the plane."""
     profile = [(radius, 0.001), (radius, 0.35 * depth), (0.82 * radius, depth)]
-    dial = standing(revolve(profile, 16), at)
+    dial = stand_up(revolve(profile, 16), at)
     mark = box(around(0.0015, at[0]), (at[1] - depth - 0.002, at[1] - depth), (at[2], at[2] + 0.75 * radius))
     parts = pieces("knob", dial, finish, group="knob") + pieces("knob_mark", mark, "mark", group="knob")
     return Mover(name, parts, "revolute", (0, 1, 0), at, TURN, "hinge_knob", "knob")

@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import band, curve, tube, turns
-from pipeline.corpus.furniture.finishes import PROFILES, Finish, Material, Scheme, cane, one_of
-from pipeline.corpus.furniture.finishes import shade as tinted
+from pipeline.corpus.furniture.finishes import PROFILES, Finish, Finishes, Material, cane, one_of, tint
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, standing
+from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, stand_up
 
 WALL = 0.006
 
@@ -19,20 +18,10 @@ WALL = 0.006
 DOME = tuple((math.cos(a), math.sin(a) / math.sin(1.25)) for a in np.linspace(0.0, 1.25, 5))
 
 
-def shade_word(rng: np.random.Generator, scheme: Scheme, without: str) -> str:
+def shade_word(rng: np.random.Generator, finishes: Finishes, without: str) -> str:
     """Draw a form of shade that the style likes."""
-    words = [word for word in scheme.manner.shades.split() if word not in without.split()] or ["drum"]
+    words = [word for word in finishes.style.shades.split() if word not in without.split()] or ["drum"]
     return one_of(rng, words)
-
-
-def cord(z: Interval) -> list[Solid]:
-    """Return a cord in the middle from z[0] up to z[1]."""
-    return [rod((0, 0, z[0]), (0, 0, z[1]), 0.0035, n=6)]
-
-
-def rose(h: float) -> list[Solid]:
-    """Return the canopy at the ceiling, at height `h`."""
-    return revolve([(0.055, h - 0.024), (0.055, h - 0.006), (0.9 * 0.055, h)], 20)
 
 
 def bulb(z: float, tall: float, at: Spot) -> Pieces:
@@ -41,24 +30,26 @@ def bulb(z: float, tall: float, at: Spot) -> Pieces:
     return pieces("bulb", revolve(profile, 10, at), "glow")
 
 
-def shade(rng: np.random.Generator, scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot = (0.0, 0.0), n: int = 24) -> Pieces:
+def shade(
+    rng: np.random.Generator, finishes: Finishes, kind: str, radius: float, z: Interval, at: Spot = (0.0, 0.0), n: int = 24
+) -> Pieces:
     """Return a shade of `radius` over heights `z`: hollow with a bulb and spokes in it, or a lit globe."""
     if kind in ("globe", "paper"):
-        return _ball(scheme, kind, radius, z, at, n)
+        return _ball(finishes, kind, radius, z, at, n)
     if kind in ("lantern", "cage"):
-        return (_lantern if kind == "lantern" else _cage)(scheme, radius, z)
-    metal, weave = scheme.handle, cane(rng)
+        return (_lantern if kind == "lantern" else _cage)(finishes, radius, z)
+    metal, weave = finishes.handle, cane(rng)
     shares = DOME if kind == "dome" else PROFILES[f"{kind}_shade"]
     profile = [(r * radius, z[0] + q * (z[1] - z[0])) for r, q in shares]
-    dome = metal if rng.random() < 0.6 else scheme.front
-    covers: dict[str, Material] = {"rattan": weave, "cone": scheme.front, "dome": dome, "mushroom": scheme.front, "crystal": "glow"}
+    dome = metal if rng.random() < 0.6 else finishes.front
+    covers: dict[str, Material] = {"rattan": weave, "cone": finishes.front, "dome": dome, "mushroom": finishes.front, "crystal": "glow"}
     cover = covers.get(kind, "shade_cloth")
     if cover == "shade_cloth" and rng.random() < 0.3:
-        cover = Finish("shade_linen", tinted(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
+        cover = Finish("shade_linen", tint(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
     return pieces("shade", _walls(kind, profile, at, n), cover) + _fittings(radius, profile[-1][0], z, at, metal)
 
 
-def _ball(scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot, n: int) -> Pieces:
+def _ball(finishes: Finishes, kind: str, radius: float, z: Interval, at: Spot, n: int) -> Pieces:
     """Build a lit globe with its cap, or a squat ball of paper on a neck."""
     low, high = z
     tall, squat = high - low, 1.0 if kind == "globe" else 0.92
@@ -66,9 +57,9 @@ def _ball(scheme: Scheme, kind: str, radius: float, z: Interval, at: Spot, n: in
     steps = [(radius * math.cos(a), low + tall / 2 + tall / 2 * math.sin(a) / math.sin(1.45)) for a in angles]
     parts = pieces("globe", revolve([(r, q * squat + low * (1 - squat)) if kind == "paper" else (r, q) for r, q in steps], n, at), "glow")
     if kind == "paper":
-        return parts + pieces("neck", revolve([(0.12 * radius, low + squat * tall), (0.12 * radius, high)], 10, at), scheme.timber)
+        return parts + pieces("neck", revolve([(0.12 * radius, low + squat * tall), (0.12 * radius, high)], 10, at), finishes.timber)
     if tall > 0.08 and n > 16:
-        parts += pieces("cap", revolve([(0.3 * radius, high - 0.02 * tall), (0.24 * radius, high)], 12, at), scheme.handle)
+        parts += pieces("cap", revolve([(0.3 * radius, high - 0.02 * tall), (0.24 * radius, high)], 12, at), finishes.handle)
     return parts
 
 
@@ -83,7 +74,7 @@ def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
         path = np.array([polar(middle * (0.965 if k % 2 else 1.0), a) for k, a in enumerate(turns(36))])
         for stave in band(path, 0.005, (z0, z1), closed=True):
             grow = np.where(np.arange(8) < 4, r0, r1) / (0.5 * (r0 + r1))
-            walls.append(Solid(stave.vertices * np.column_stack([grow, grow, np.ones(8)]), stave.faces).moved((*at, 0.0)))
+            walls.append(Solid(stave.vertices * np.column_stack([grow, grow, np.ones(8)]), stave.faces).translate((*at, 0.0)))
     return walls
 
 
@@ -102,7 +93,7 @@ def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Material)
     return parts
 
 
-def _lantern(scheme: Scheme, radius: float, z: Interval) -> Pieces:
+def _lantern(finishes: Finishes, radius: float, z: Interval) -> Pieces:
     """Four paper panes in a frame of thin wood with a cap and a foot."""
     low, high = z
     r = min(radius / math.sqrt(2) * 1.35, radius)
@@ -116,13 +107,13 @@ def _lantern(scheme: Scheme, radius: float, z: Interval) -> Pieces:
     frame += [box(around(half), around(half), level, bevel) for half, level, bevel in caps]
     panes = [box(around(0.002, s * (r - 0.7 * t)), inner, span) for s in (-1, 1)]
     panes += [box(inner, around(0.002, s * (r - 0.7 * t)), span) for s in (-1, 1)]
-    return pieces("frame", frame, scheme.timber) + pieces("panes", panes, "glow")
+    return pieces("frame", frame, finishes.timber) + pieces("panes", panes, "glow")
 
 
-def _cage(scheme: Scheme, radius: float, z: Interval) -> Pieces:
+def _cage(finishes: Finishes, radius: float, z: Interval) -> Pieces:
     """Bent wires around a bare bulb, hoops that hold them, a cap with the socket."""
     low, high = z
-    tall, metal = high - low, scheme.handle
+    tall, metal = high - low, finishes.handle
     shape = [(0.34, 0.0), (0.8, 0.14), (1.0, 0.42), (0.8, 0.7), (0.3, 0.9)]
     parts: Pieces = ()
     for a in turns(8):
@@ -135,61 +126,61 @@ def _cage(scheme: Scheme, radius: float, z: Interval) -> Pieces:
     return parts + bulb(high - 0.12 * tall - 0.5 * tall, 0.5 * tall, (0.0, 0.0))
 
 
-def turned_along(shape: Shape) -> Shape:
+def turn_along_y(shape: Shape) -> Shape:
     """Return what was built along x along y."""
-    return Shape(tuple(replace(p, solid=p.solid.turned("z", math.pi / 2)) for p in shape.base))
+    return Shape(tuple(replace(p, solid=p.solid.rotate("z", math.pi / 2)) for p in shape.base))
 
 
-def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a shade on a pole or on three legs, or globes on a stem."""
     r = w / 2
     if form == "globes":
-        return Shape(_stem_of_globes(rng, w, d, h, scheme))
-    kind = shade_word(rng, scheme, "globe cage lantern paper crystal mushroom cylinder")
+        return Shape(_stem_of_globes(rng, w, d, h, finishes))
+    kind = shade_word(rng, finishes, "globe cage lantern paper crystal mushroom cylinder")
     tall = min(0.26 * h, 0.95 * w)
-    parts = shade(rng, scheme, kind, r, (h - tall, h))
-    return Shape(parts + (_tripod(rng, w, d, h, tall, scheme) if form == "tripod" else _pole(rng, w, d, h, tall, scheme)))
+    parts = shade(rng, finishes, kind, r, (h - tall, h))
+    return Shape(parts + (_tripod(rng, w, d, h, tall, finishes) if form == "tripod" else _pole(rng, w, d, h, tall, finishes)))
 
 
-def _tripod(rng: np.random.Generator, w: float, d: float, h: float, tall: float, scheme: Scheme) -> Pieces:
+def _tripod(rng: np.random.Generator, w: float, d: float, h: float, tall: float, finishes: Finishes) -> Pieces:
     """Build three legs, the hub on them, sometimes a shelf between them; the shade above is `tall`."""
-    r, metal = w / 2, scheme.handle
+    r, metal = w / 2, finishes.handle
     top = h - tall
     ends = [polar(0.95 * r, a) for a in turns(3, math.pi / 2)]
-    parts = pieces("legs", [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends], scheme.timber)
+    parts = pieces("legs", [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends], finishes.timber)
     if rng.random() < 0.5:
-        parts += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), scheme.timber)
+        parts += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), finishes.timber)
     hub = revolve([(0.05, top - 0.035), (0.05, top - 0.02), (0.012, top - 0.012), (0.008, top + 0.3 * tall)], 14)
     return parts + pieces("hub", hub, metal)
 
 
-def _pole(rng: np.random.Generator, w: float, d: float, h: float, tall: float, scheme: Scheme) -> Pieces:
+def _pole(rng: np.random.Generator, w: float, d: float, h: float, tall: float, finishes: Finishes) -> Pieces:
     """Build a round foot with a pole under a shade that is `tall`, turned where the style likes ornament."""
-    r, metal = w / 2, scheme.handle
-    if scheme.manner.ornament > 0.5:
+    r, metal = w / 2, finishes.handle
+    if finishes.style.ornament > 0.5:
         steps = [(0.6 * r, 0.0), (0.6 * r, 0.03), (0.05, 0.05), (0.02, 0.12), (0.032, 0.3), (0.016, 0.36 * h), (0.03, 0.42 * h)]
         steps += [(0.016, 0.46 * h), (0.02, 0.6 * h), (0.01, h - tall), (0.008, h - 0.7 * tall)]
-        return pieces("pole", revolve(steps, 16), scheme.timber if rng.random() < 0.5 else metal)
+        return pieces("pole", revolve(steps, 16), finishes.timber if rng.random() < 0.5 else metal)
     return pieces("pole", revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20), metal)
 
 
-def _stem_of_globes(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
+def _stem_of_globes(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build three lit globes on arms around a stem."""
-    r, metal = w / 2, scheme.handle
+    r, metal = w / 2, finishes.handle
     parts = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
     q = 0.36 * r
     for k, z in enumerate((0.62 * h, 0.78 * h, 0.93 * h)):
         a = 2.2 * k + 0.4
         x, y = (r - q) * math.cos(a), (min(r, d / 2) - q) * math.sin(a)
-        parts += shade(rng, scheme, "globe", q, (z - q, min(z + q, h)), (x, y), 14)
+        parts += shade(rng, finishes, "globe", q, (z - q, min(z + q, h)), (x, y), 14)
         u = np.array([x, y, 0]) / max(math.hypot(x, y), 1e-6)
         parts += pieces("arms", rod(0.01 * u + (0, 0, z), (x, y, z) - q * u * 0.99, 0.006, n=6), metal)
     return parts
 
 
-def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a small shade on an arm, a lit bar, a globe on a plate, or candles on swung arms; the back is at the wall."""
-    metal = scheme.handle
+    metal = finishes.handle
     back = d / 2
     if form == "bar":
         plate = box(around(0.5 * w), (back - 0.018, back), (0.36 * h, 0.64 * h), 0.004)
@@ -202,9 +193,9 @@ def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float,
     if form == "globe":
         r = min(w / 2, 0.42 * d)
         y = -d / 2 + r
-        disc = standing([slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)], (0, back, 0.5 * h))
+        disc = stand_up([slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)], (0, back, 0.5 * h))
         neck = rod((0, back - 0.016, 0.5 * h), (0, y + 0.95 * r, 0.5 * h), 0.009, n=8)
-        globe = shade(rng, scheme, "globe", r, around(min(r, 0.5 * h), 0.5 * h), (0.0, y), 18)
+        globe = shade(rng, finishes, "globe", r, around(min(r, 0.5 * h), 0.5 * h), (0.0, y), 18)
         return Shape(pieces("plate", disc, metal) + pieces("neck", neck, metal) + globe)
     r = min(w / 2, 0.4 * d) if form == "shade" else min(0.24 * w, 0.4 * d)
     wide = 0.2 * w if form != "shade" or r > 0.4 * w else 0.5 * w
@@ -213,37 +204,37 @@ def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float,
         x, y = s * (w / 2 - r), -d / 2 + r
         swing = curve([(0.1 * x, back - 0.016, 0.34 * h), (0.6 * x, 0.5 * (y + back), 0.22 * h), (x, y, 0.26 * h), (x, y, 0.42 * h)], 2)
         parts += pieces("arm", tube(swing, 0.0065, 6), metal)
-        parts += shade(rng, scheme, "pleated" if scheme.manner.ornament > 0.5 else "drum", r, (h - 0.55 * h, h), (x, y), 16)
+        parts += shade(rng, finishes, "pleated" if finishes.style.ornament > 0.5 else "drum", r, (h - 0.55 * h, h), (x, y), 16)
     return Shape(parts)
 
 
-def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a shade on a foot of pottery, turned wood or metal, a globe, a mushroom, or a desk lamp with a jointed arm."""
-    metal = scheme.handle
+    metal = finishes.handle
     r = w / 2
     if form == "desk":
-        return turned_along(table_lamp(rng, form, d, w, h, scheme)) if d > w else Shape(_desk_lamp(rng, w, d, h, scheme))
+        return turn_along_y(table_lamp(rng, form, d, w, h, finishes)) if d > w else Shape(_desk_lamp(rng, w, d, h, finishes))
     if form == "mushroom":
         foot = revolve([(0.5 * r, 0.0), (0.42 * r, 0.1 * h), (0.34 * r, 0.45 * h), (0.4 * r, 0.6 * h)], 20)
         bend = curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2)
         cap = revolve(bend.tolist(), 28)
-        return Shape(pieces("stem", foot, scheme.front) + pieces("cap", cap, "glow" if rng.random() < 0.5 else scheme.front))
+        return Shape(pieces("stem", foot, finishes.front) + pieces("cap", cap, "glow" if rng.random() < 0.5 else finishes.front))
     if form == "globe":
         foot = revolve([(0.6 * r, 0.0), (0.6 * r, 0.02), (0.3 * r, 0.03), (0.2 * r, h - 1.95 * r)], 20)
-        base = pieces("foot", foot, metal if rng.random() < 0.6 else scheme.stone)
-        return Shape(base + shade(rng, scheme, "globe", r, (max(0.05, h - 1.95 * r), h)))
+        base = pieces("foot", foot, metal if rng.random() < 0.6 else finishes.stone)
+        return Shape(base + shade(rng, finishes, "globe", r, (max(0.05, h - 1.95 * r), h)))
     tall = 0.42 * h
     stem = h - tall
     belly = curve([(0.45, 0.0), (0.5, 0.03), (0.62, 0.2), (0.5, 0.4), (0.16, 0.52)], 2).tolist()
     turning = [(0.5, 0.0), (0.5, 0.03), (0.14, 0.06), (0.26, 0.16), (0.34, 0.28), (0.14, 0.42), (0.2, 0.48)]
     profile = [(a * r, b * h) for a, b in (belly if rng.random() < 0.5 else turning)]
     profile += [(0.01, min(0.54 * h, stem - 0.01)), (0.006, h - 0.45 * tall - 0.072 if tall > 0.16 else h - 0.5 * tall)]
-    finish = scheme.timber if rng.random() < 0.4 else replace(scheme.front, name="pottery", roughness=0.2)
-    kind = shade_word(rng, scheme, "globe cage lantern paper crystal mushroom cylinder dome")
-    return Shape(pieces("foot", revolve(profile, 20), finish) + shade(rng, scheme, kind, r, (stem, h)))
+    finish = finishes.timber if rng.random() < 0.4 else replace(finishes.front, name="pottery", roughness=0.2)
+    kind = shade_word(rng, finishes, "globe cage lantern paper crystal mushroom cylinder dome")
+    return Shape(pieces("foot", revolve(profile, 20), finish) + shade(rng, finishes, kind, r, (stem, h)))
 
 
-def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
+def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round foot, an arm with an elbow and a cone at its end, along x."""
     q = min(0.5 * d, 0.34 * w)
     x0, tip = -w / 2 + q, w / 2 - 0.28 * d
@@ -251,5 +242,5 @@ def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, scheme: S
     x, z = x0 - 0.25 * q, 0.6 * h  # of the elbow
     arm = [rod((x0, 0, 0.022), (x, 0, z - 0.012), 0.007, n=8), rod((x + 0.01, 0, z + 0.003), (tip, 0.0, h - 0.02), 0.007, n=8)]
     arm.append(rod((x, -0.014, z), (x, 0.014, z), 0.012, n=10))
-    head = shade(rng, scheme, "cone", 0.28 * d, (h - 0.02 - 0.42 * d, h - 0.02), (tip, 0.0), 16)
-    return pieces("foot", foot, scheme.handle) + pieces("arm", arm, scheme.handle) + head
+    head = shade(rng, finishes, "cone", 0.28 * d, (h - 0.02 - 0.42 * d, h - 0.02), (tip, 0.0), 16)
+    return pieces("foot", foot, finishes.handle) + pieces("arm", arm, finishes.handle) + head

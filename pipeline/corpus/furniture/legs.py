@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.bent import curve, tube, turns
-from pipeline.corpus.furniture.finishes import PROFILES, Finish, Scheme, one_of
+from pipeline.corpus.furniture.bent import curve, lathe, tube, turns
+from pipeline.corpus.furniture.finishes import PROFILES, Finish, Finishes, one_of
 from pipeline.corpus.furniture.intervals import Spot, around, between, inset, polar, split
 from pipeline.corpus.furniture.solids import Solid, beam, box, revolve, rod, stack
 
@@ -18,16 +18,16 @@ WIDE = frozenset({"sled", "cross", "plank"})  # forms that join the two legs of 
 RAKES = {"splayed": (0.12, 0.06, 0.3, 0.52), "dowel": (0.03, 0.02, 0.42, 0.42), "ming": (0.03, 0.02, 0.42, 0.42)}
 
 
-def leg_finish(scheme: Scheme, kind: str) -> Finish:
+def leg_finish(finishes: Finishes, kind: str) -> Finish:
     """Return what legs of a form are made of: metal forms of metal, others of wood, or lacquered like the fronts."""
     if kind in METAL:
-        return scheme.handle
-    return scheme.accent if scheme.accent is not scheme.handle else scheme.timber
+        return finishes.handle
+    return finishes.accent if finishes.accent is not finishes.handle else finishes.timber
 
 
-def draw_kind(rng: np.random.Generator, scheme: Scheme, without: str = "") -> str:
+def draw_kind(rng: np.random.Generator, finishes: Finishes, without: str = "") -> str:
     """Draw a leg form that the style likes; `without` names forms that do not fit here."""
-    kinds = [k for k in scheme.manner.legs.split() if k not in without.split()] or ["tapered"]
+    kinds = [k for k in finishes.style.legs.split() if k not in without.split()] or ["tapered"]
     return one_of(rng, kinds)
 
 
@@ -67,14 +67,11 @@ def leg(kind: str, at: Spot, out: Spot, height: float, thick: float) -> list[Sol
         share, most, foot, top = RAKES[kind]
         reach = min(share * h, most)
         return [rod((x + sx * reach, y + sy * reach, 0), (x, y, h), foot * t, top * t, 10)]
+    if kind in ("turned", "bun") and h < 0.16:
+        return lathe("bun_leg", max(0.6 * t, 0.028), h, 14, at)
     if kind in ("turned", "bun"):
-        return _bun(x, y, h, t) if h < 0.16 else _turned_leg(x, y, h, t)
+        return [*lathe("turned_leg", t, h, 12, at), box(around(0.52 * t, x), around(0.52 * t, y), (0.84 * h, h), 0.002)]
     return _ORNATE[kind](x, y, sx, sy, h, t)
-
-
-def _turned_leg(x: float, y: float, h: float, t: float) -> list[Solid]:
-    block = box(around(0.52 * t, x), around(0.52 * t, y), (0.84 * h, h), 0.002)
-    return [*revolve([(r * t, z * h) for r, z in PROFILES["turned_leg"]], 12, (x, y)), block]
 
 
 def _fluted_leg(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
@@ -98,11 +95,6 @@ def _hairpin(x: float, y: float, sx: float, sy: float, h: float, t: float) -> li
     b = rod((x, y - sy * spread, h - 0.003), (x0 + sx * 0.004, y0 - sy * 0.0065, 0.006), r, n=6)
     plate = box(inset(between(x, x - sx * spread), -r), inset(between(y, y - sy * spread), -r), (h - 0.003, h))
     return [a, b, plate, revolve([(0.013, 0.0), (0.013, 0.006)], 10, (x0, y0))[0]]
-
-
-def _bun(x: float, y: float, h: float, t: float) -> list[Solid]:
-    r = max(0.6 * t, 0.028)
-    return revolve([(0.55 * r, 0.0), (r, 0.25 * h), (r, 0.5 * h), (0.6 * r, 0.78 * h), (0.85 * r, 0.86 * h), (0.85 * r, h)], 14, (x, y))
 
 
 def _horse(x: float, y: float, sx: float, sy: float, h: float, t: float) -> list[Solid]:
@@ -146,21 +138,18 @@ def _frame(kind: str, x: float, y: float, h: float, t: float) -> list[Solid]:
     return [box(around(s, x), around(y + s), (0, 1.6 * s), 0.002), *posts]
 
 
-def pedestal(rng: np.random.Generator, scheme: Scheme, radius: float, height: float) -> list[Solid]:
+def pedestal(rng: np.random.Generator, finishes: Finishes, radius: float, height: float) -> list[Solid]:
     """Return a foot and a column for a round top: a trumpet, a disc with a tube, a drum, a turned column on three feet."""
-    classic = scheme.manner.ornament > 0.5
-    kind = int(rng.integers(2, 4)) if classic else int(rng.integers(3))
+    kind = int(rng.integers(2, 4) if finishes.style.ornament > 0.5 else rng.integers(3))
     r, h = radius, height
     if kind == 0:
-        steps = ((1.0, 0.0), (1.0, 0.012), (0.62, 0.035), (0.36, 0.1), (0.2, 0.24), (0.14, 0.45), (0.14, 0.7), (0.22, 0.88), (0.42, 1.0))
-        return revolve([(a * r, b * h) for a, b in steps], 24)
+        return lathe("trumpet_foot", r, h, 24)
     if kind == 1:
         stem, plate = 0.05 + 0.05 * r, 0.6 * r
         return revolve([(r, 0.0), (r, 0.012), (0.94 * r, 0.02), (stem, 0.022), (stem, h - 0.012), (plate, h - 0.01), (plate, h)], 24)
     if kind == 2:
         return revolve([(0.62 * r, 0.0), (0.62 * r, 0.03), (0.5 * r, 0.05), (0.42 * r, 0.5 * h), (0.5 * r, 0.94 * h), (0.62 * r, h)], 20)
-    column = [(0.17, 0.2), (0.24, 0.26), (0.24, 0.3), (0.14, 0.36), (0.26, 0.52), (0.28, 0.6), (0.14, 0.8), (0.24, 0.92), (0.44, 1.0)]
-    solids = revolve([(a * r, b * h) for a, b in column], 16)
+    solids = lathe("turned_column", r, h, 16)
     foot = ((0.23 * r, 0.27 * h), (0.5 * r, 0.24 * h), (0.8 * r, 0.06 * h), (r, 0.025))
     for a in turns(3, math.pi / 2):
         path = curve([polar(out, a, z) for out, z in foot], 2)

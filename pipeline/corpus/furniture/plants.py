@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
-from pipeline.corpus.furniture.finishes import FINISHES, PROFILES, Finish, Material, Scheme, draw_material, shade
+from pipeline.corpus.furniture.finishes import FINISHES, PROFILES, Finish, Finishes, Material, draw_material, tint
 from pipeline.corpus.furniture.intervals import Spot, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
 from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
@@ -18,18 +18,18 @@ GOLDEN = math.pi * (3 - math.sqrt(5))
 Points = NDArray[np.float64]
 
 
-def plant(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def plant(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bush, a palm, a monstera, a fiddle fig, or an olive tree in a pot."""
     pot_r = min(0.3 * min(w, d), 0.2)
-    pot, crown = _pot(rng, pot_r, min(0.34 * h, 0.36, 1.9 * pot_r), scheme)
+    pot, crown = _pot(rng, pot_r, min(0.34 * h, 0.36, 1.9 * pot_r), finishes)
     grow = {"bush": _bush, "palm": _palm, "monstera": _monstera, "fig": _fig, "olive": _olive}[form]
-    green = Finish("leaf", shade(rng, FINISHES["leaf"].color, 0.28), 0.55, pattern="leaf", density=300)
+    green = Finish("leaf", tint(rng, FINISHES["leaf"].color, 0.28), 0.55, pattern="leaf", density=300)
     return Shape(pot + grow(rng, Growth((w / 2, d / 2), crown, h, pot_r, green)))
 
 
-def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[Pieces, float]:
+def _pot(rng: np.random.Generator, r: float, h: float, finishes: Finishes) -> tuple[Pieces, float]:
     """Return a pot with soil, and the height of the soil: tapered, cylindrical, bellied, a box, or a planter on legs."""
-    finish = draw_material(rng, "ceramic", "clay", scheme.front, "concrete_pot")
+    finish = draw_material(rng, "ceramic", "clay", finishes.front, "concrete_pot")
     kind = int(rng.integers(4))
     lift = 0.0
     parts: Pieces = ()
@@ -37,8 +37,8 @@ def _pot(rng: np.random.Generator, r: float, h: float, scheme: Scheme) -> tuple[
         lift = 0.35 * h
         legs = [rod(polar(0.96 * r, a, 0), polar(0.96 * r, a, 0.72 * h), 0.011, n=8) for a in turns(4, 0.4)]
         bar = polar(0.95 * r - 0.012, 0.4)
-        parts += pieces("stand", legs, scheme.timber)
-        parts += pieces("stand_bars", rod((-bar[0], -bar[1], lift - 0.012), (*bar, lift - 0.012), 0.009, n=6), scheme.timber)
+        parts += pieces("stand", legs, finishes.timber)
+        parts += pieces("stand_bars", rod((-bar[0], -bar[1], lift - 0.012), (*bar, lift - 0.012), 0.009, n=6), finishes.timber)
         r = r * 0.9
     profile = [(a * r, lift + b * (h - lift)) for a, b in PROFILES[f"pot_{kind}"]]
     walls = [(profile[0][0], lift + 0.014), *profile[1:]]
@@ -169,5 +169,5 @@ def _olive(rng: np.random.Generator, g: Growth) -> Pieces:
             p = top + t * (end - top)
             for m in range(2):
                 g.leaf(p, p + reach * np.array(polar(1.0, a + j * 1.9 + m * math.pi, float(rng.uniform(-0.2, 0.5)))))
-    grey = Finish("olive_leaf", shade(rng, (0.16, 0.22, 0.12), 0.15), 0.6, pattern="leaf", density=300)
+    grey = Finish("olive_leaf", tint(rng, (0.16, 0.22, 0.12), 0.15), 0.6, pattern="leaf", density=300)
     return g.parts("trunk", "bark", 0.02 + 0.03 * g.small, grey, n=4)

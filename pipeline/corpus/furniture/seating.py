@@ -5,15 +5,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import arc, curve, lean, prism, sheet, tube, turns, wall
-from pipeline.corpus.furniture.finishes import CLASSIC, ORIENTAL, Finish, Material, Scheme, cane, one_of
+from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, prism, sheet, tube, turns, wall
+from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of
 from pipeline.corpus.furniture.intervals import around, between, corners, polar, split
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, beam, board, box, circle, cushion, revolve, rod, slab, standing
+from pipeline.corpus.furniture.solids import Solid, at_height, beam, board, box, circle, cushion, revolve, rod, slab, stand_up
 from pipeline.corpus.furniture.textiles import piping, seat_cushion, tufted_panel, upright_pad
 
 TUBE = 0.011  # radius of bent steel
+# Backs of nothing but rails: shares of the height from and to which each reaches, and how deep it is in thicknesses of the posts.
+RAILS = {"ladder": [(a, a + 0.11, 0.55) for a in (0.14, 0.38, 0.62)], "panel": [(0.28, 0.8, 0.5)], "cane": [(0.2, 0.3, 0.8)]}
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,43 +39,28 @@ class Frame:
 
 def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
     """Return the two posts that rise from the seat."""
-    solids = []
-    for s in (-1, 1):
-        x, y, t = s * (frame.x - frame.thick / 2), frame.y, frame.thick
-        if turned:
-            solids.append(rod((x, y, frame.low), (x, y, frame.high), 0.5 * t, 0.4 * t, 8))
-        else:
-            solids.append(beam((x, y, frame.low), (x, y, frame.high), 0.86 * t, 0.86 * t, 1.15))
-    return solids
+    t, xs = frame.thick, [s * (frame.x - frame.thick / 2) for s in (-1, 1)]
+    ends = [((x, frame.y, frame.low), (x, frame.y, frame.high)) for x in xs]
+    return [rod(*span, 0.5 * t, 0.4 * t, 8) if turned else beam(*span, 0.86 * t, 0.86 * t, 1.15) for span in ends]
 
 
-def back(rng: np.random.Generator, kind: str, frame: Frame, scheme: Scheme) -> Pieces:
+def back(rng: np.random.Generator, kind: str, frame: Frame, finishes: Finishes) -> Pieces:
     """Return a back of one kind: slat, ladder, panel, splat, spindle, cane, cross, pad."""
-    t = frame.thick
-    soft: list[Solid] = []
-    wood: list[Solid] = []
-    other: Pieces = ()
+    t, rise = frame.thick, frame.high - frame.low
     if kind == "pad":
-        soft = upright_pad(
-            rng, scheme, around(frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * (frame.high - frame.low), frame.high)
-        )
+        pad = upright_pad(rng, finishes, around(frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * rise, frame.high))
+        return pieces("back_pad", lean(pad, frame.low, frame.slope), finishes.soft)
+    wood = posts(frame, turned=kind in ("spindle", "ladder") and finishes.style.ornament > 0.3)
+    wood.append(frame.bar(0.86, 1.0, t))
+    if kind in RAILS:
+        wood += [frame.bar(low, high, t, deep) for low, high, deep in RAILS[kind]]
     else:
-        wood = posts(frame, turned=kind in ("spindle", "ladder") and scheme.manner.ornament > 0.3)
-        wood.append(frame.bar(0.86, 1.0, t))
-        wood += {"slat": _slats, "ladder": _ladder, "panel": _panel, "splat": _splat, "spindle": _spindles, "cross": _cross}.get(
-            kind, _rail
-        )(frame)
-        if kind == "cane":
-            rise = frame.high - frame.low
-            inset = 1.0 * t
-            sheet = box(around(frame.x - inset), around(0.004, frame.y), (frame.low + 0.3 * rise, frame.low + 0.86 * rise))
-            other = pieces("cane", lean([sheet], frame.low, frame.slope), cane(rng))
-    tilted = lean(wood, frame.low, frame.slope)
-    return pieces("back", tilted, frame.wood) + pieces("back_pad", lean(soft, frame.low, frame.slope), scheme.soft) + other
-
-
-def _rail(frame: Frame) -> list[Solid]:
-    return [frame.bar(0.2, 0.3, frame.thick)]
+        wood += {"slat": _slats, "splat": _splat, "spindle": _spindles, "cross": _cross}[kind](frame)
+    parts = pieces("back", lean(wood, frame.low, frame.slope), frame.wood)
+    if kind == "cane":
+        sheet = box(around(frame.x - t), around(0.004, frame.y), (frame.low + 0.3 * rise, frame.low + 0.86 * rise))
+        parts += pieces("cane", lean([sheet], frame.low, frame.slope), cane(rng))
+    return parts
 
 
 def _slats(frame: Frame) -> list[Solid]:
@@ -82,14 +69,6 @@ def _slats(frame: Frame) -> list[Solid]:
     xs = np.linspace(-frame.x + 2.2 * t, frame.x - 2.2 * t, count)
     low, high = frame.low + 0.24 * rise, frame.low + 0.86 * rise
     return [frame.bar(0.16, 0.24, t), *(box(around(0.016, x), around(0.006, frame.y), (low, high), 0.002) for x in xs)]
-
-
-def _ladder(frame: Frame) -> list[Solid]:
-    return [frame.bar(a, a + 0.11, frame.thick, 0.55) for a in (0.14, 0.38, 0.62)]
-
-
-def _panel(frame: Frame) -> list[Solid]:
-    return [frame.bar(0.28, 0.8, frame.thick, 0.5)]
 
 
 def _splat(frame: Frame) -> list[Solid]:
@@ -120,19 +99,19 @@ def _cross(frame: Frame) -> list[Solid]:
     return bars
 
 
-def dining_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def dining_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a chair: framed (wood, upholstered, spindle, cafe), a shell, a wishbone, or a cantilever."""
     build = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever}.get(form)
-    return Shape(build(rng, w, d, h, scheme) if build else _frame_chair(rng, form, w, d, h, scheme))
+    return Shape(build(rng, w, d, h, finishes) if build else _frame_chair(rng, form, w, d, h, finishes))
 
 
-def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
+def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     seat = min(0.47, 0.56 * h)
     x, y = w / 2, d / 2
-    thick = 0.034 * scheme.manner.slim
+    thick = 0.034 * finishes.style.slim
     without = "plank cross hairpin block bun sled pipe" if form != "cafe" else "plank cross block bun"
-    kind = "ming" if scheme.style in ORIENTAL else draw_kind(rng, scheme, without)
-    wood = leg_finish(scheme, kind)
+    kind = "ming" if finishes.tradition == "oriental" else draw_kind(rng, finishes, without)
+    wood = leg_finish(finishes, kind)
     rise = 0.12 * (h - seat)
     back_y = y - rise - 0.5 * thick
     top = 0.05 if form != "wood" else 0.026
@@ -140,37 +119,37 @@ def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     under = seat - top - rail
     half = inside(kind, (x, (back_y + y) / 2 + 0.3 * thick), under, thick)
     middle = (back_y - y) / 2 + 0.3 * thick
-    parts = pieces("legs", [s.moved((0, middle, 0)) for s in legs(kind, half, under, thick)], wood)
+    parts = pieces("legs", [s.translate((0, middle, 0)) for s in legs(kind, half, under, thick)], wood)
     parts += pieces("rail", board(around(x - 0.012), (-y + 0.016, back_y + 0.5 * thick), (under, under + rail), 0.02, 2, 0.004), wood)
     span_x, span_y = (-x, x), (-y, back_y - 0.55 * thick)
     if form == "wood":
-        parts += pieces("seat", board(span_x, span_y, (seat - top, seat), 0.05, 3, scheme.manner.edge), scheme.body)
-    elif scheme.manner.cane > 0.3 and rng.random() < scheme.manner.cane:
+        parts += pieces("seat", board(span_x, span_y, (seat - top, seat), 0.05, 3, finishes.style.edge), finishes.body)
+    elif finishes.style.cane > 0.3 and rng.random() < finishes.style.cane:
         parts += pieces("seat", board(span_x, span_y, (seat - top, seat - 0.01), 0.05, 3, 0.006), cane(rng))
     else:
-        parts += seat_cushion(span_x, span_y, (seat - top, seat + 0.02), 0.04, scheme.soft, piping(rng, scheme), 0.018)
+        parts += seat_cushion(span_x, span_y, (seat - top, seat + 0.02), 0.04, finishes.soft, piping(rng, finishes), 0.018)
     frame = Frame(x - 0.012, back_y, under + rail, h, rise / (h - seat), thick, wood)
     kinds = {"wood": "slat ladder panel cane", "upholstered": "pad", "spindle": "spindle", "cafe": "cross"}[form]
-    if form == "wood" and scheme.style in (*ORIENTAL, *CLASSIC):
-        kinds = "splat" if scheme.style in ORIENTAL else "splat ladder"
+    if form == "wood" and finishes.tradition:
+        kinds = "splat" if finishes.tradition == "oriental" else "splat ladder"
     choice = one_of(rng, kinds.split())
     if choice == "pad":
         foot, head = (back_y, under + rail), (back_y, seat - 0.021 + 0.08 * (h - seat + 0.02))
         short = [beam((s * 0.62 * x, *foot), (s * 0.62 * x, *head), 0.03, 0.022) for s in (-1, 1)]
         parts += pieces("posts", lean(short, under + rail, frame.slope), wood)
         frame = replace(frame, low=seat - 0.02)
-    parts += back(rng, choice, frame, scheme)
+    parts += back(rng, choice, frame, finishes)
     if kind in ("square", "ming", "turned") and rng.random() < 0.55:
         z, span = 0.36 * under, (middle - half[1] + 0.5 * thick, middle + half[1] - 0.5 * thick)
         parts += pieces("stretchers", [box(around(0.009, s * half[0]), span, (z, z + 0.026), 0.002) for s in (-1, 1)], wood)
     return parts
 
 
-def _shell_chair(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
+def _shell_chair(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bent shell of plywood, plastic or cloth on four legs, a wire base, or a swivel foot."""
     seat, x, y = min(0.46, 0.55 * h), w / 2, d / 2
     soft = rng.random() < 0.45
-    finish = scheme.soft if soft else scheme.front
+    finish = finishes.soft if soft else finishes.front
     thick = 0.035 if soft else 0.013
     front = [(-y + thick, seat - 0.02), (-0.72 * y, seat), (0.1 * y, seat - 0.025)]
     path = curve([*front, (0.52 * y, seat + 0.01), (0.74 * y, seat + 0.3 * (h - seat)), (y - 0.02, h)], 3)
@@ -181,21 +160,21 @@ def _shell_chair(rng: np.random.Generator, w: float, d: float, h: float, scheme:
         wings = [cushion(between(s * x, s * (x - 0.03)), (-0.25 * y, 0.6 * y), tall, 0.014, 2) for s in (-1, 1)]
         parts += pieces("arms", wings, finish)
     if not soft and rng.random() < 0.4:
-        parts += seat_cushion(around(0.8 * x), (-0.7 * y, 0.4 * y), (seat + 0.008, seat + 0.04), 0.015, scheme.soft, None, 0.006)
+        parts += seat_cushion(around(0.8 * x), (-0.7 * y, 0.4 * y), (seat + 0.008, seat + 0.04), 0.015, finishes.soft, None, 0.006)
     top = seat - 0.06
     base = int(rng.integers(3))
     if base == 0:
         column = revolve([(0.42 * w, 0.0), (0.42 * w, 0.01), (0.03, 0.03), (0.022, top - 0.02), (0.12, top - 0.012), (0.12, top)], 20)
-        return parts + pieces("foot", column, scheme.handle)
-    kind, thick, finish = ("splayed", 0.036, scheme.timber) if base == 1 else ("dowel", 0.026, scheme.handle)
+        return parts + pieces("foot", column, finishes.handle)
+    kind, thick, finish = ("splayed", 0.036, finishes.timber) if base == 1 else ("dowel", 0.026, finishes.handle)
     feet = legs(kind, (0.3 * w, 0.3 * d), top - 0.012, thick)
     plate = board(around(0.34 * w), around(0.34 * d), (top - 0.012, top), 0.03, 2, 0.002)
-    return parts + pieces("legs", feet, finish) + pieces("plate", plate, scheme.handle)
+    return parts + pieces("legs", feet, finish) + pieces("plate", plate, finishes.handle)
 
 
-def _wishbone(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
+def _wishbone(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round crest that becomes the arms, on posts, with a forked splat and a woven seat."""
-    seat, x, y, wood = min(0.45, 0.55 * h), w / 2, d / 2, scheme.timber
+    seat, x, y, wood = min(0.45, 0.55 * h), w / 2, d / 2, finishes.timber
     r = 0.016
     bow = arc((0.0, 0.0), x - 0.018, 0.0, math.pi, 10, (y - 0.02) / (x - 0.018))
     path = np.column_stack([bow, np.interp(np.abs(bow[:, 0]), [0, x], [h - r, h - 0.1 * h])])
@@ -215,27 +194,27 @@ def _wishbone(rng: np.random.Generator, w: float, d: float, h: float, scheme: Sc
     return parts + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), "cord")
 
 
-def _cantilever(rng: np.random.Generator, w: float, d: float, h: float, scheme: Scheme) -> Pieces:
+def _cantilever(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Bent steel from the floor over the front up to the seat and the back, with cane, leather or cloth between."""
     seat, x, y = min(0.46, 0.56 * h), w / 2 - TUBE, d / 2
     side = [(y - 0.03, TUBE), (-y + 0.06, TUBE), (-y + TUBE, 0.06), (-y + TUBE, seat - 0.08), (-y + 0.06, seat - 0.02)]
     side += [(0.55 * y, seat - 0.035), (0.66 * y, seat + 0.02), (y - 0.012, h - 0.012)]
     frame = [s for sx in (-1, 1) for s in tube([(sx * x, a, b) for a, b in side], TUBE, 8)]
     frame += [rod((-x + TUBE, y - 0.03, TUBE), (x - TUBE, y - 0.03, TUBE), TUBE, n=8)]
-    panel, thick = (scheme.soft, 0.03) if rng.random() < 0.6 else (cane(rng), 0.014)
+    panel, thick = (finishes.soft, 0.03) if rng.random() < 0.6 else (cane(rng), 0.014)
     inner = around(x - TUBE - 0.002)
     seat_pad = cushion(inner, (-y + 0.05, 0.5 * y), (seat - 0.035, seat - 0.035 + thick), 0.012, 2)
     slope = (y - 0.012 - 0.66 * y) / (h - seat - 0.03)
     pad = cushion(inner, around(thick / 2, 0.66 * y), (seat + 0.28 * (h - seat), h), 0.012, 2)
-    parts = pieces("frame", frame, scheme.handle) + pieces("seat", seat_pad, panel)
+    parts = pieces("frame", frame, finishes.handle) + pieces("seat", seat_pad, panel)
     return parts + pieces("back", lean([pad], seat + 0.02, slope), panel)
 
 
-def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build an official's hat chair with a yoke, or a rose chair with a low square back."""
     seat = min(0.5, 0.55 * h)
     x, y = 0.5 * w - 0.03, 0.5 * d - 0.03
-    wood = scheme.timber
+    wood = finishes.timber
     under = seat - 0.032
     posts = [rod((px, py, 0), (px, py, under), 0.018, 0.016, 10) for px, py in corners(x, y)]
     posts += [rod((-x + 0.017, sy, z), (x - 0.017, sy, z), 0.012, n=8) for sy, z in ((-y, 0.07), (y, 0.12))]
@@ -248,8 +227,8 @@ def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     splat = box((-0.085, 0.085), around(0.007, y), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
     parts += pieces("frame", upper, wood) + pieces("splat", splat, wood)
     if rng.random() < 0.55:
-        cord = scheme.second if rng.random() < 0.4 else None
-        parts += seat_cushion(around(0.84 * x), (-0.86 * y, 0.8 * y), (seat + 0.0005, seat + 0.045), 0.02, scheme.soft, cord, 0.008)
+        cord = finishes.second if rng.random() < 0.4 else None
+        parts += seat_cushion(around(0.84 * x), (-0.86 * y, 0.8 * y), (seat + 0.0005, seat + 0.045), 0.02, finishes.soft, cord, 0.008)
     return Shape(parts)
 
 
@@ -268,45 +247,45 @@ def _yoke(form: str, x: float, y: float, seat: float, arm: float, h: float) -> t
     return upper, top
 
 
-def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a round upholstered stool, one with a low curved back, or a drum with a skirt."""
     seat = h if h < 0.56 else min(0.48, 0.6 * h)
     low, squash = seat - 0.11, d / w
     if form == "drum":
-        parts = pieces("body", revolve([(0.44 * w, 0.0), (0.46 * w, 0.03), (0.46 * w, low)], 28, squash=squash), scheme.second)
+        parts = pieces("body", revolve([(0.44 * w, 0.0), (0.46 * w, 0.03), (0.46 * w, low)], 28, squash=squash), finishes.second)
     else:
-        kind = draw_kind(rng, scheme, "plank cross sled horse block bun pipe")
+        kind = draw_kind(rng, finishes, "plank cross sled horse block bun pipe")
         half = 0.31 * w
-        parts = pieces("legs", legs(kind, (half, half * d / w), low - 0.012, 0.034), leg_finish(scheme, kind))
-        parts += pieces("ring", slab(circle(0.45 * w, 24, squash=squash), (low - 0.012, low), 0.003), leg_finish(scheme, kind))
+        parts = pieces("legs", legs(kind, (half, half * d / w), low - 0.012, 0.034), leg_finish(finishes, kind))
+        parts += pieces("ring", slab(circle(0.45 * w, 24, squash=squash), (low - 0.012, low), 0.003), leg_finish(finishes, kind))
     backed = h > seat + 0.1
     profile = [(0.46 * w, low), (0.495 * w, low + 0.015), (0.5 * w, low + 0.04), (0.5 * w, seat - 0.05)]
     profile += [(0.47 * w, seat - 0.018), (0.36 * w, seat - 0.003), (0.2 * w, seat)]
     if backed:
         profile = [(0.85 * r, z) for r, z in profile]
-    parts += pieces("seat", revolve(profile, 28, squash=squash), scheme.soft)
+    parts += pieces("seat", revolve(profile, 28, squash=squash), finishes.soft)
     if backed:
         bow = arc((0.0, 0.0), 0.467 * w, 0.06 * math.pi, 0.94 * math.pi, 10, squash)
         rise = 0.55 + 0.45 * np.sin(np.linspace(0.1, math.pi - 0.1, 11))
-        parts += pieces("back", wall(bow, 0.06, low, seat + (h - seat) * rise / rise.max(), 0.025), scheme.soft)
+        parts += pieces("back", wall(bow, 0.06, low, seat + (h - seat) * rise / rise.max(), 0.025), finishes.soft)
     return Shape(parts)
 
 
-def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a high seat on four legs or on a column; a foot rest goes around it."""
     seat = h if h < 0.85 else 0.72 * h
     x, y = w / 2, d / 2
-    metal, top = scheme.handle, seat - 0.075
+    metal, top = finishes.handle, seat - 0.075
     if form == "pedestal":
         r, z = min(w, d), 0.32 * seat
         column = [(0.46 * r, 0.0), (0.46 * r, 0.012), (0.05, 0.035), (0.028, 0.05), (0.026, top - 0.012), (0.11, top - 0.01), (0.11, top)]
         hoop = arc((0.0, 0.0), 0.3 * r, 0, 2 * math.pi, 14)[:-1]
-        rest = tube(np.column_stack([hoop, np.full(14, z)]), 0.009, 6, closed=True)
+        rest = tube(at_height(hoop, z), 0.009, 6, closed=True)
         rest += [rod(polar(0.028, a, z), polar(0.3 * r - 0.009, a, z), 0.007, n=6) for a in turns(3, math.pi / 2)]
         parts = pieces("column", revolve(column, 24), metal) + pieces("foot_rest", rest, metal)
     else:
-        kind = draw_kind(rng, scheme, "plank cross sled block bun hairpin blade cabriole")
-        finish = leg_finish(scheme, kind)
+        kind = draw_kind(rng, finishes, "plank cross sled block bun hairpin blade cabriole")
+        finish = leg_finish(finishes, kind)
         half = inside(kind, (x, y), top - 0.02, 0.036)
         frame = board(around(0.46 * w), around(0.44 * d), (top - 0.02, top), 0.03, 2, 0.003)
         parts = pieces("legs", legs(kind, half, top - 0.02, 0.036), finish) + pieces("frame", frame, finish)
@@ -315,45 +294,43 @@ def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
         rest = [rod((-a + 0.012, t * b, z), (a - 0.012, t * b, z), 0.009, n=8) for t in (-1, 1)]
         rest += [rod((s * a, -b + 0.012, z + 0.04), (s * a, b - 0.012, z + 0.04), 0.009, n=8) for s in (-1, 1)]
         parts += pieces("foot_rest", rest, metal if kind in METAL else finish)
-    parts += seat_cushion((-x, x), (-y, 0.84 * y), (top, seat), 0.03, scheme.soft, piping(rng, scheme))
+    parts += seat_cushion((-x, x), (-y, 0.84 * y), (top, seat), 0.03, finishes.soft, piping(rng, finishes))
     if h > seat + 0.1:
-        parts += pieces("back", upright_pad(rng, scheme, around(0.45 * w), (y - 0.055, y), (seat + 0.05, h)), scheme.soft)
+        parts += pieces("back", upright_pad(rng, finishes, around(0.45 * w), (y - 0.055, y), (seat + 0.05, h)), finishes.soft)
         struts = [box(around(0.012, s * 0.3 * w), (0.85 * y, 0.85 * y + 0.012), (top, seat + 0.05), 0.002) for s in (-1, 1)]
         parts += pieces("struts", struts, metal)
     return Shape(parts)
 
 
-def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bed-end bench, an ottoman, a stool on legs, a round pouf, or a ceramic drum."""
     x, y = w / 2, d / 2
     if form == "drum":
-        profile = [(0.62, 0.0), (0.7, 0.06), (0.92, 0.26), (1.0, 0.5), (0.92, 0.74), (0.7, 0.94), (0.62, 1.0)]
-        glazed = Finish("glaze", scheme.soft.color, 0.2, density=900)
-        return Shape(pieces("drum", revolve([(a * x, b * h) for a, b in profile], 24, squash=d / w), glazed))
+        glazed = Finish("glaze", finishes.soft.color, 0.2, density=900)
+        return Shape(pieces("drum", lathe("drum_stool", x, h, 24, squash=d / w), glazed))
     if form == "pouf":
-        profile = [(0.6, 0.0), (0.86, 0.06), (0.97, 0.22), (1.0, 0.5), (0.97, 0.78), (0.86, 0.94), (0.5, 1.0)]
-        wool = Finish("knit", scheme.soft.color, 0.95, pattern="knit", density=80)
-        return Shape(pieces("pouf", revolve([(a * x, b * h) for a, b in profile], 28, squash=d / w), wool))
-    cord = piping(rng, scheme)
+        wool = Finish("knit", finishes.soft.color, 0.95, pattern="knit", density=80)
+        return Shape(pieces("pouf", lathe("pouf", x, h, 28, squash=d / w), wool))
+    cord = piping(rng, finishes)
     if form == "ottoman":
         low = 0.66 * h
-        feet = legs("bun" if scheme.manner.ornament > 0.5 else "tapered", (x - 0.05, y - 0.05), 0.06, 0.05)
+        feet = legs("bun" if finishes.style.ornament > 0.5 else "tapered", (x - 0.05, y - 0.05), 0.06, 0.05)
         body = cushion(around(x - 0.004), around(y - 0.004), (0.06, low), 0.02, 2)
-        parts = pieces("feet", feet, scheme.timber) + pieces("body", body, scheme.soft)
-        if rng.random() < scheme.manner.tufts and w > 0.4:
+        parts = pieces("feet", feet, finishes.timber) + pieces("body", body, finishes.soft)
+        if rng.random() < finishes.style.tufts and w > 0.4:
             pad = tufted_panel((-x, x), (-0.34 * h, 0.0), (-y, y), max(2, round(w / 0.22)), max(2, round(d / 0.22)))
-            laid = standing(pad, (0, 0, 0))
+            laid = stand_up(pad, (0, 0, 0))
             drop = low - min(float(s.vertices[:, 2].min()) for s in laid)
-            return Shape(parts + pieces("seat", [s.moved((0, 0, drop)) for s in laid], scheme.soft))
-        return Shape(parts + seat_cushion((-x, x), (-y, y), (low, h), 0.05, scheme.soft, cord))
-    kind = draw_kind(rng, scheme, "bun blade")
+            return Shape(parts + pieces("seat", [s.translate((0, 0, drop)) for s in laid], finishes.soft))
+        return Shape(parts + seat_cushion((-x, x), (-y, y), (low, h), 0.05, finishes.soft, cord))
+    kind = draw_kind(rng, finishes, "bun blade")
     half = inside(kind, (x, y), h - 0.1, 0.04)
     thick = min(0.12, 0.3 * h) if form == "bench" else 0.07
-    finish, top = leg_finish(scheme, kind), h - thick
+    finish, top = leg_finish(finishes, kind), h - thick
     parts = pieces("legs", legs(kind, half, top - 0.035, 0.04), finish)
     parts += pieces("frame", board(around(x - 0.008), around(y - 0.008), (top - 0.035, top), 0.02, 2, 0.004), finish)
     if form == "legs" and rng.random() < 0.35:
-        return Shape(parts + pieces("seat", board((-x, x), (-y, y), (top, h), 0.03, 3, scheme.manner.edge), scheme.body))
+        return Shape(parts + pieces("seat", board((-x, x), (-y, y), (top, h), 0.03, 3, finishes.style.edge), finishes.body))
     for span in split((-x, x), max(1, round(w / 0.55)) if form == "bench" else 1, 0.001):
-        parts += seat_cushion(span, (-y, y), (top, h), 0.04, scheme.soft, cord)
+        parts += seat_cushion(span, (-y, y), (top, h), 0.04, finishes.soft, cord)
     return Shape(parts)

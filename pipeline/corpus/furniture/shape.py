@@ -121,14 +121,14 @@ def fit_to_size(shape: Shape, size: Vector) -> Shape:
     Builders come within a few percent of their box; this takes up the rest. Lengths of sliding joints scale along.
     Every component is drawn in by CLEARANCE first, so that no two touch; the pieces of one meet without a seam.
     """
-    movers = tuple(replace(m, pieces=_drawn_in(m.pieces)) for m in shape.movers)
-    shape = Shape(_drawn_in(shape.base), movers)
+    movers = tuple(replace(m, pieces=_draw_in(m.pieces)) for m in shape.movers)
+    shape = Shape(_draw_in(shape.base), movers)
     low, high = shape.bounds()
     factors = np.asarray(size, float) / (high - low)
     offset = -np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
 
     def place(parts: Pieces) -> Pieces:
-        return tuple(replace(p, solid=p.solid.moved(offset).scaled(factors)) for p in parts)
+        return tuple(replace(p, solid=p.solid.translate(offset).scale(factors)) for p in parts)
 
     placed = []
     for mover in shape.movers:
@@ -138,7 +138,7 @@ def fit_to_size(shape: Shape, size: Vector) -> Shape:
     return Shape(place(shape.base), tuple(placed))
 
 
-def _drawn_in(parts: Pieces) -> Pieces:
+def _draw_in(parts: Pieces) -> Pieces:
     """Draw in the components of one body: pieces of a group, or else of one name."""
     components: dict[str, list[NDArray[np.float64]]] = {}
     for piece in parts:
@@ -154,30 +154,21 @@ def _smaller(solid: Solid, low: NDArray[np.float64], high: NDArray[np.float64]) 
     return Solid((solid.vertices - centre) * factors + centre, solid.faces)
 
 
-def frozen(shape: Shape) -> Shape:
+def freeze(shape: Shape) -> Shape:
     """Return the shape with every mover fixed where it rests."""
     return Shape(tuple(shape.pieces()))
 
 
-def translate(shape: Shape, offset: Vector, prefix: str = "") -> Shape:
-    """Return the shape translated by `offset` (3,) [m]; `prefix` goes before the names of its pieces and movers."""
-    dx, dy, dz = (float(v) for v in offset)
+def translate(shape: Shape, offset: Axis3, prefix: str) -> Shape:
+    """Return the shape, whose movers all hang on its base, translated by `offset` [m]; `prefix` goes before their names and its pieces'."""
+    dx, dy, dz = offset
 
     def place(parts: Pieces) -> Pieces:
-        return tuple(replace(p, name=prefix + p.name, solid=p.solid.moved(offset)) for p in parts)
+        return tuple(replace(p, name=prefix + p.name, solid=p.solid.translate(offset)) for p in parts)
 
-    movers = tuple(
-        replace(
-            m,
-            name=prefix + m.name,
-            pieces=place(m.pieces),
-            origin=(m.origin[0] + dx, m.origin[1] + dy, m.origin[2] + dz),
-            parent=m.parent if m.parent == "base" else prefix + m.parent,
-            after=tuple(prefix + name for name in m.after),
-        )
-        for m in shape.movers
-    )
-    return Shape(place(shape.base), movers)
+    origins = [(m.origin[0] + dx, m.origin[1] + dy, m.origin[2] + dz) for m in shape.movers]
+    movers = zip(shape.movers, origins, strict=True)
+    return Shape(place(shape.base), tuple(replace(m, name=prefix + m.name, pieces=place(m.pieces), origin=at) for m, at in movers))
 
 
 def join_shapes(*shapes: Shape) -> Shape:

@@ -66,15 +66,15 @@ class Solid:
         self.vertices.max(axis=0, out=corners[1])
         return corners
 
-    def moved(self, offset: Vector) -> Solid:
+    def translate(self, offset: Vector) -> Solid:
         """Return the solid translated by `offset` (3,)."""
         return Solid(self.vertices + np.asarray(offset, float), self.faces)
 
-    def scaled(self, factors: NDArray[np.float64]) -> Solid:
+    def scale(self, factors: NDArray[np.float64]) -> Solid:
         """Return the solid scaled per axis by positive `factors` (3,) about the origin."""
         return Solid(self.vertices * factors, self.faces)
 
-    def turned(self, axis: str, angle: float, about: Vector = (0.0, 0.0, 0.0)) -> Solid:
+    def rotate(self, axis: str, angle: float, about: Vector = (0.0, 0.0, 0.0)) -> Solid:
         """Return the solid rotated by `angle` [rad], right-handed, about the `axis` (x, y or z) through a point."""
         c, s = math.cos(angle), math.sin(angle)
         i, j = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
@@ -83,11 +83,11 @@ class Solid:
         pivot = np.asarray(about, float)
         return Solid((self.vertices - pivot) @ R.T + pivot, self.faces)
 
-    def mapped(self, matrix: NDArray[np.float64]) -> Solid:
+    def transform(self, matrix: NDArray[np.float64]) -> Solid:
         """Return the solid under a linear map (3, 3) of positive determinant: sheared, stretched or turned."""
         return Solid(self.vertices @ matrix.T, self.faces)
 
-    def mirrored(self) -> Solid:
+    def mirror(self) -> Solid:
         """Return the mirror image in x, faces turned so that they still look outwards."""
         return Solid(self.vertices * np.array([-1.0, 1.0, 1.0]), tuple(f[::-1] for f in self.faces))
 
@@ -138,9 +138,9 @@ def _stack_faces(n: int, rings: int) -> tuple[Face, ...]:
     return tuple(faces)
 
 
-def standing(solids: Iterable[Solid], at: Vector) -> list[Solid]:
+def stand_up(solids: Iterable[Solid], at: Vector) -> list[Solid]:
     """Return solids made lying about the origin, turned upright to face the front (-y), what was the origin now `at` (3,)."""
-    return [s.turned("x", math.pi / 2).moved(at) for s in solids]
+    return [s.rotate("x", math.pi / 2).translate(at) for s in solids]
 
 
 def box(x: Interval, y: Interval, z: Interval, bevel: float = 0.0) -> Solid:
@@ -148,21 +148,17 @@ def box(x: Interval, y: Interval, z: Interval, bevel: float = 0.0) -> Solid:
     bevel = min(bevel, 0.3 * min(x[1] - x[0], y[1] - y[0], z[1] - z[0]))
     if bevel <= 0:
         ring = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
-        return stack([_at(ring, z[0]), _at(ring, z[1])])
+        return stack([at_height(ring, z[0]), at_height(ring, z[1])])
     rings = []
     for height, inset in ((z[0], 1), (z[0] + bevel, 0), (z[1] - bevel, 0), (z[1], 1)):
-        rings.append(_at(_octagon(x, y, bevel, inset * bevel), height))
+        rings.append(at_height(_octagon(x, y, bevel, inset * bevel), height))
     return stack(rings)
 
 
 def strips(x: Interval, y: Interval, hole_x: Interval, hole_y: Interval, z: Interval, bevel: float = 0.0) -> list[Solid]:
     """Return four boxes over `z` around a hole in the rectangle `x`, `y`: those at its sides take all of `y`."""
-    return [
-        box((x[0], hole_x[0]), y, z, bevel),
-        box((hole_x[1], x[1]), y, z, bevel),
-        box(hole_x, (y[0], hole_y[0]), z, bevel),
-        box(hole_x, (hole_y[1], y[1]), z, bevel),
-    ]
+    spans = [((x[0], hole_x[0]), y), ((hole_x[1], x[1]), y), (hole_x, (y[0], hole_y[0])), (hole_x, (hole_y[1], y[1]))]
+    return [box(a, b, z, bevel) for a, b in spans]
 
 
 def walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0.0) -> list[Solid]:
@@ -220,7 +216,7 @@ def pillow(x: Interval, y: Interval, z: Interval, steps: int = 2) -> Solid:
     centre, middle, half = np.array([(x[0] + x[1]) / 2, (y[0] + y[1]) / 2]), (z[0] + z[1]) / 2, (z[1] - z[0]) / 2
     rings = []
     for height, scale in ((-1, 0.34), (-0.82, 0.66), (-0.45, 0.88), (0, 1), (0.45, 0.88), (0.82, 0.66), (1, 0.34)):
-        rings.append(_at(centre + (outline - centre) * scale, middle + half * height))
+        rings.append(at_height(centre + (outline - centre) * scale, middle + half * height))
     return stack(rings)
 
 
@@ -230,8 +226,8 @@ def slab(outline: NDArray[np.float64], z: Interval, bevel: float = 0.0) -> Solid
     reach = float(np.abs(outline - centre).max())
     inner = centre + (outline - centre) * (1 - bevel / reach)
     if bevel <= 0:
-        return stack([_at(outline, z[0]), _at(outline, z[1])])
-    return stack([_at(inner, z[0]), _at(outline, z[0] + bevel), _at(outline, z[1] - bevel), _at(inner, z[1])])
+        return stack([at_height(outline, z[0]), at_height(outline, z[1])])
+    return stack([at_height(inner, z[0]), at_height(outline, z[0] + bevel), at_height(outline, z[1] - bevel), at_height(inner, z[1])])
 
 
 def board(x: Interval, y: Interval, z: Interval, radius: float, steps: int, bevel: float = 0.0) -> Solid:
@@ -257,13 +253,17 @@ def rounded_rectangle(x: Interval, y: Interval, radius: float, steps: int = 4) -
     return np.array(points)
 
 
+def perpendicular(direction: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a unit vector (3,) at right angles to another."""
+    u = np.cross(direction, (1.0, 0.0, 0.0) if abs(direction[0]) < 0.9 else (0.0, 1.0, 0.0))
+    return np.asarray(u / np.linalg.norm(u))
+
+
 def rod(start: Vector, end: Vector, radius: float, end_radius: float | None = None, n: int = 8) -> Solid:
     """Return a (tapered) round bar between two points."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     direction = (b - a) / np.linalg.norm(b - a)
-    helper = np.array([1.0, 0, 0]) if abs(direction[0]) < 0.9 else np.array([0, 1.0, 0])
-    u = np.cross(direction, helper)
-    u /= np.linalg.norm(u)
+    u = perpendicular(direction)
     v = np.cross(direction, u)
     angles = (np.arange(n) + 0.5) * (2 * np.pi / n)
     ring = np.cos(angles)[:, None] * u + np.sin(angles)[:, None] * v
@@ -290,8 +290,8 @@ def revolve(profile: Sequence[Interval], n: int = 20, centre: Interval = (0.0, 0
             runs[-1].append(point)
         else:
             runs.append([runs[-1][-1], point])
-    solids = [stack([_at(circle(max(r, 1e-3), n, centre), z) for r, z in run]) for run in runs]
-    return solids if squash == 1 else [s.scaled(np.array([1.0, squash, 1.0])) for s in solids]
+    solids = [stack([at_height(circle(max(r, 1e-3), n, centre), z) for r, z in run]) for run in runs]
+    return solids if squash == 1 else [s.scale(np.array([1.0, squash, 1.0])) for s in solids]
 
 
 def shell(outer: Sequence[NDArray[np.float64]], inner: Sequence[NDArray[np.float64]]) -> list[Solid]:
@@ -308,7 +308,7 @@ def shell(outer: Sequence[NDArray[np.float64]], inner: Sequence[NDArray[np.float
 
 def ring(outer: Interval, inner: Interval, z: Interval, n: int = 16, centre: Interval = (0.0, 0.0), squash: float = 1.0) -> list[Solid]:
     """Return a round wall with radii (at the bottom, at the top) `outer` and `inner`, as n staves; `squash` scales y."""
-    rims = [[_at(circle(r[k], n, centre, squash), z[k]) for k in (0, 1)] for r in (outer, inner)]
+    rims = [[at_height(circle(r[k], n, centre, squash), z[k]) for k in (0, 1)] for r in (outer, inner)]
     return shell(rims[0], rims[1])
 
 
@@ -324,5 +324,6 @@ def hull(points: NDArray[np.float64]) -> Solid:
     return Solid(kept, tuple(map(tuple, corners.tolist())))
 
 
-def _at(outline: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+def at_height(outline: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+    """Return an outline (n, 2) as points (n, 3) at one height [m]."""
     return np.concatenate([outline, np.full((len(outline), 1), height)], axis=1)

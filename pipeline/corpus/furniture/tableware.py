@@ -6,24 +6,11 @@ import math
 import numpy as np
 
 from pipeline.corpus.furniture.bent import blades, curve, prism, tube
-from pipeline.corpus.furniture.finishes import (
-    FABRICS,
-    FINISHES,
-    LACQUERS,
-    PROFILES,
-    WOODS,
-    Finish,
-    Material,
-    Scheme,
-    draw_material,
-    one_of,
-    pick,
-    shade,
-)
+from pipeline.corpus.furniture.finishes import COLORS, FINISHES, PROFILES, Finish, Finishes, Material, draw_material, one_of, pick, tint
 from pipeline.corpus.furniture.fronts import Rect, lid
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset, polar
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, pieces, staves
-from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, slab, stack, walls
+from pipeline.corpus.furniture.solids import Solid, at_height, box, circle, revolve, ring, slab, stack, walls
 
 GLAZES = ("white", "ivory", "sage", "dusty_blue", "terracotta", "anthracite", "mustard", "blush", "navy", "greige")
 BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dusty_blue", "barn_red", "emerald", "greige", "blush", "black")
@@ -32,7 +19,7 @@ BINDINGS = ("terracotta", "navy", "sage", "ivory", "anthracite", "mustard", "dus
 def glaze(rng: np.random.Generator) -> Finish:
     """Draw a glazed pottery."""
     name = one_of(rng, GLAZES)
-    return Finish(f"glaze_{name}", shade(rng, LACQUERS[name], 0.06), 0.2, density=2200)
+    return Finish(f"glaze_{name}", tint(rng, COLORS[name], 0.06), 0.2, density=2200)
 
 
 def vessel(profile: list[Spot], wall: float, floor: float, n: int) -> list[Solid]:
@@ -44,7 +31,7 @@ def vessel(profile: list[Spot], wall: float, floor: float, n: int) -> list[Solid
     return solids
 
 
-def cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a mug with a handle, a tumbler of glass, or a bowl-shaped tea cup."""
     finish = glaze(rng)
     if form == "tumbler":
@@ -53,14 +40,14 @@ def cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, schem
     x = r - w / 2  # the body stands left of the middle, the handle is right of it
     mug, bowl_shaped = [(0.92, 0.0), (1.0, 0.12), (1.0, 1.0)], [(0.5, 0.0), (0.74, 0.14), (0.92, 0.45), (1.0, 1.0)]
     profile = [(a * r, b * h) for a, b in (mug if form == "mug" else bowl_shaped)]
-    body = [s.moved((x, 0, 0)) for s in vessel(profile, 0.005, 0.006, 20)]
+    body = [s.translate((x, 0, 0)) for s in vessel(profile, 0.005, 0.006, 20)]
     edge = x + r - 0.004
     bow = ((edge - 0.1 * r, 0.82), (w / 2 - 0.004, 0.72), (w / 2 - 0.006, 0.4), (edge - 0.1 * r * (form != "mug"), 0.24))
     grip = tube(curve([(px, 0, z * h) for px, z in bow], 2), 0.0045, 6)
     return Shape(pieces("cup", body, finish) + pieces("handle", grip, finish))
 
 
-def plate(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def plate(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a flat plate, or a deep one, with a rim."""
     r = w / 2
     finish = glaze(rng) if rng.random() < 0.6 else "ceramic"
@@ -69,15 +56,15 @@ def plate(rng: np.random.Generator, form: str, w: float, d: float, h: float, sch
     return Shape(low + pieces("rim", ring((well * r, r), (well * r - 0.003, r - 0.01), (0.3 * h, h), 24), finish))
 
 
-def bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bowl of pottery or wood."""
     r = w / 2
-    finish = Finish("turned_wood", shade(rng, WOODS["beech"]), 0.5, pattern="grain", density=650) if form == "wood" else glaze(rng)
+    finish = Finish("turned_wood", tint(rng, COLORS["beech"]), 0.5, pattern="grain", density=650) if form == "wood" else glaze(rng)
     profile = [(0.42 * r, 0.0), (0.78 * r, 0.32 * h), (0.95 * r, 0.7 * h), (r, h)]
     return Shape(pieces("bowl", vessel(profile, 0.006, 0.08 * h, 24), finish))
 
 
-def vase(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def vase(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bottle, a bellied or an upright vase, some with twigs in it."""
     finish = glaze(rng)
     tall, share, n = (0.55 * h, 0.42, 16) if form == "twigs" else (h, 1.0, 24)
@@ -104,16 +91,15 @@ def _twigs(rng: np.random.Generator, w: float, d: float, h: float, tall: float) 
         for p in path[2:]:
             roots += [p - (0, 0, 0.01)] * 2
             tips += [p + polar(0.05, a + side * 0.9, 0.02) for side in (-1, 1)]
-    green = Finish(
-        "dry_leaf", shade(rng, FINISHES["leaf"].color if rng.random() < 0.6 else (0.40, 0.26, 0.10), 0.25), 0.7, pattern="leaf", density=300
-    )
+    color = FINISHES["leaf"].color if rng.random() < 0.6 else (0.40, 0.26, 0.10)
+    green = Finish("dry_leaf", tint(rng, color, 0.25), 0.7, pattern="leaf", density=300)
     return pieces("stems", stems, "twig") + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green)
 
 
 def binding(rng: np.random.Generator) -> Finish:
     """Draw a book's cover."""
     name = one_of(rng, BINDINGS)
-    return Finish(f"binding_{name}", shade(rng, LACQUERS[name], 0.12), 0.6, density=700)
+    return Finish(f"binding_{name}", tint(rng, COLORS[name], 0.12), 0.6, density=700)
 
 
 def flat_book(rng: np.random.Generator, x: Interval, y: Interval, z: Interval) -> Pieces:
@@ -124,7 +110,7 @@ def flat_book(rng: np.random.Generator, x: Interval, y: Interval, z: Interval) -
     return parts + pieces("pages", box((x[0] + t, x[1] - 0.004), inset(y, 0.004), inset(z, t)), "paper")
 
 
-def book(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def book(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a book that lies, stands upright, or lies open."""
     if form != "open":
         return Shape(flat_book(rng, around(w / 2), around(d / 2), (0.0, h)))
@@ -138,7 +124,7 @@ def book(rng: np.random.Generator, form: str, w: float, d: float, h: float, sche
     return Shape(parts)
 
 
-def book_stack(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def book_stack(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a pile of books, or a row of upright ones."""
     parts: Pieces = ()
     if form == "row":
@@ -163,21 +149,21 @@ def book_stack(rng: np.random.Generator, form: str, w: float, d: float, h: float
     return Shape(parts)
 
 
-def basket(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def basket(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a woven basket, round or square, with two handles."""
-    straw = Finish("straw", shade(rng, (0.52, 0.36, 0.18)), 0.9, pattern="cane", density=300, second=(0.22, 0.14, 0.07))
+    straw = Finish("straw", tint(rng, (0.52, 0.36, 0.18)), 0.9, pattern="cane", density=300, second=(0.22, 0.14, 0.07))
     body = h - 0.03
     top = body + 0.015
     if form == "round":
         squash = np.array([1, d / w, 1])
         wall = vessel([(0.40 * w, 0.0), (0.48 * w, 0.4 * body), (0.46 * w, body)], 0.012, 0.012, 18)
-        solids = [s.scaled(squash) for s in wall]
+        solids = [s.scale(squash) for s in wall]
         rim = ring((0.5 * w, 0.5 * w), (0.46 * w, 0.46 * w), (body, top), 18, squash=d / w)
     else:
         t, x, y = 0.012, around(w / 2 - 0.006), around(d / 2 - 0.006)
         solids = [box(x, y, (0, t)), *walls(x, y, (t, body), t)]
         rim = walls(around(w / 2), around(d / 2), (body, top), 0.024, 0.004)
-    rope = Finish("rope", FABRICS["taupe_cloth"], 0.95, density=400)
+    rope = Finish("rope", COLORS["taupe_cloth"], 0.95, density=400)
     grips: list[Solid] = []
     for s in (-1, 1):
         x0 = s * (0.478 * w if form == "round" else w / 2 - 0.012)
@@ -191,9 +177,9 @@ def tray_walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0
     return [box(x, y, (z[0], z[0] + t), bevel), *walls(x, y, (z[0] + t, z[1]), t, bevel)]
 
 
-def trash_can(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def trash_can(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bin: round with a pedal, square, with a lid that slides, or with one that swings in a hood."""
-    finish = draw_material(rng, "steel", "plastic", Finish("enamel_bin", shade(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))
+    finish = draw_material(rng, "steel", "plastic", Finish("enamel_bin", tint(rng, (0.6, 0.58, 0.52), 0.3), 0.35, density=900))
     top = h - 0.035
     cover_finish = finish if pick(rng, "same dark") == "same" else "plastic"
     if form in ("round", "pedal"):
@@ -213,7 +199,7 @@ def trash_can(rng: np.random.Generator, form: str, w: float, d: float, h: float,
         return _swing_bin(x, y, h, finish, cover_finish)
     base = pieces("body", tray_walls(x, y, (0.0, top), 0.009, 0.002), finish)
     corners = np.array([(-w / 2, -d / 2), (w / 2, -d / 2), (w / 2, d / 2), (-w / 2, d / 2)])
-    low = np.column_stack([corners, np.full(4, top + 0.003)])
+    low = at_height(corners, top + 0.003)
     shrink = 0.9 if form == "box" else 0.97
     rise = np.array([0, 0, h - top - 0.003])
     cover = pieces("lid", stack([low, low + np.array([0, 0, 0.012]), low * np.array([shrink, shrink, 1]) + rise]), cover_finish)
@@ -241,12 +227,12 @@ def _swing_bin(x: Interval, y: Interval, h: float, finish: Material, hood: Mater
     return Shape(base + pieces("hood", over, hood), (mover,))
 
 
-def storage_box(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def storage_box(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a box: a hinged lid with a latch strip, four flaps of cardboard, or a lid that slides off."""
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
     if form == "flaps":
         return _carton(w, d, h)
-    finish = scheme.body if form == "slide" or rng.random() < 0.5 else Finish("box_lacquer", scheme.front.color, 0.5, density=600)
+    finish = finishes.body if form == "slide" or rng.random() < 0.5 else Finish("box_lacquer", finishes.front.color, 0.5, density=600)
     t = 0.009
     if form == "slide":
         top = h - 0.016
@@ -263,9 +249,9 @@ def storage_box(rng: np.random.Generator, form: str, w: float, d: float, h: floa
     rim = [box(span, (front, y[1]), (low + 0.002, h - t)) for span in edges(x, t)]
     rim += [box(inset(x, t), (a, a + t), (low + 0.002, h - t)) for a in (front, y[1] - t)]
     lid_parts += pieces("lid_rim", rim, finish)
-    lid_parts += pieces("tab", box((-0.025, 0.025), (y[0], front), (low - 0.012, low + 0.02), 0.002), scheme.handle, "line_fixed_handle")
+    lid_parts += pieces("tab", box((-0.025, 0.025), (y[0], front), (low - 0.012, low + 0.02), 0.002), finishes.handle, "line_fixed_handle")
     corners = [box(around(0.012, sx * (w / 2 - 0.012)), (front - 0.001, front), (0.0, 0.03)) for sx in (-1, 1)]
-    base += pieces("corners", corners, scheme.handle)
+    base += pieces("corners", corners, finishes.handle)
     return Shape(base, (lid("lid", lid_parts, (0.0, y[1], low + 0.002), math.radians(100)),))
 
 
@@ -277,14 +263,12 @@ def _carton(w: float, d: float, h: float) -> Shape:
     base += pieces("tape", box((-0.03, 0.03), (y[0] - 0.0006, y[0]), (0.35 * h, low)), "tape", group="tape")
     movers = []
     for name, side in (("flap_front", -1), ("flap_back", 1)):
-        span = sorted((side * d / 2, side * 0.002))
-        board = pieces(name, box(x, (span[0], span[1]), (low + t + 0.002, h)), "cardboard")
+        board = pieces(name, box(x, between(side * d / 2, side * 0.002), (low + t + 0.002, h)), "cardboard")
         edge: Axis3 = (0.0, side * d / 2, h)
         movers.append(Mover(name, board, "revolute", (-float(side), 0.0, 0.0), edge, math.radians(110), "hinge_lid", "lid", UP))
     for name, side in (("flap_left", -1), ("flap_right", 1)):
-        reach = 0.45 * min(d, w)
-        span = sorted((side * w / 2, side * (w / 2 - reach)))
-        board = pieces(name, box((span[0], span[1]), (y[0] + t + 0.003, y[1] - t - 0.003), (low + 0.001, low + t)), "cardboard")
+        span = between(side * w / 2, side * (w / 2 - 0.45 * min(d, w)))
+        board = pieces(name, box(span, (y[0] + t + 0.003, y[1] - t - 0.003), (low + 0.001, low + t)), "cardboard")
         edge = (side * w / 2, 0.0, low + t)
         waits = ("flap_front", "flap_back")
         movers.append(Mover(name, board, "revolute", (0.0, float(side), 0.0), edge, math.radians(110), "hinge_lid", "lid", UP, after=waits))

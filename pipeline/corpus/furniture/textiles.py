@@ -7,31 +7,18 @@ from dataclasses import replace
 import numpy as np
 
 from pipeline.corpus.furniture.bent import band
-from pipeline.corpus.furniture.finishes import (
-    CLASSIC,
-    CLOTH_GROUNDS,
-    FABRICS,
-    ORIENTAL,
-    Finish,
-    Material,
-    Pattern,
-    Scheme,
-    cover,
-    one_of,
-    pick,
-    shade,
-)
+from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, COLORS, Finish, Finishes, Material, Pattern, cover, one_of, pick, tint
 from pipeline.corpus.furniture.intervals import Interval, around, inset, split
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
-from pipeline.corpus.furniture.solids import Solid, board, box, circle, cushion, pillow, ring, rod, rounded_rectangle, slab, standing
+from pipeline.corpus.furniture.solids import Solid, board, box, circle, cushion, pillow, ring, rod, rounded_rectangle, slab, stand_up
 
 SEAM = 0.007  # height of a piping
 TERRY = ("snow_cloth", "cream_cloth", "grey_cloth", "linen", "blue_cloth", "mint_cloth", "taupe_cloth", "rust_cloth", "charcoal")
 
 
-def piping(rng: np.random.Generator, scheme: Scheme) -> Material | None:
+def piping(rng: np.random.Generator, finishes: Finishes) -> Material | None:
     """Draw what a cushion's seams are piped with, if they are."""
-    return scheme.second if rng.random() < scheme.manner.piping else None
+    return finishes.second if rng.random() < finishes.style.piping else None
 
 
 def seat_cushion(
@@ -61,15 +48,15 @@ def tufted_panel(x: Interval, y: Interval, z: Interval, across: int, rows: int) 
     return solids
 
 
-def upright_pad(rng: np.random.Generator, scheme: Scheme, x: Interval, y: Interval, z: Interval) -> list[Solid]:
+def upright_pad(rng: np.random.Generator, finishes: Finishes, x: Interval, y: Interval, z: Interval) -> list[Solid]:
     """Return an upright pad facing -y: plain, in channels, or buttoned, as the style likes."""
     wide, tall = x[1] - x[0], z[1] - z[0]
     u = rng.random()
-    if u < 0.6 * scheme.manner.tufts and wide > 0.3:
+    if u < 0.6 * finishes.style.tufts and wide > 0.3:
         return tufted_panel(x, y, z, max(2, round(wide / 0.17)), max(2, round(tall / 0.17)))
-    if u < 0.9 * scheme.manner.tufts + 0.08 and wide > 0.3:
+    if u < 0.9 * finishes.style.tufts + 0.08 and wide > 0.3:
         return channels(x, y, z, max(3, round(wide / 0.09)))
-    radius = min(0.45 * (y[1] - y[0]), scheme.manner.soft)
+    radius = min(0.45 * (y[1] - y[0]), finishes.style.soft)
     return [cushion(x, y, z, radius, 3)]
 
 
@@ -88,8 +75,8 @@ def bolster(x: Interval, y: float, z: float, radius: float) -> Solid:
 def throw_pillow(at: tuple[float, float, float], size: float, tilt: float, yaw: float) -> Solid:
     """Return a pillow that stands on `at` and leans back by `tilt` [rad]; its lowest edge is at that height."""
     solid = pillow(around(size / 2), around(size / 2), around(0.15 * size), 2)
-    solid = solid.turned("x", np.pi / 2 - tilt).turned("z", yaw)
-    return solid.moved((at[0], at[1], at[2] - float(solid.vertices[:, 2].min())))
+    solid = solid.rotate("x", np.pi / 2 - tilt).rotate("z", yaw)
+    return solid.translate((at[0], at[1], at[2] - float(solid.vertices[:, 2].min())))
 
 
 def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: Material) -> Pieces:
@@ -101,17 +88,17 @@ def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: 
     return pieces("duvet", solids, cloth)
 
 
-def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a woven rug: bordered, with diamonds, striped, plain with a deep pile, or round; some with fringes."""
-    classic = scheme.style in (*CLASSIC, *ORIENTAL)
+    classic = finishes.tradition != ""
     pattern: Pattern = pick(rng, "rug_border" if classic else "rug_diamonds rug_stripes rug_border boucle")  # type: ignore[assignment]
     if form == "round":
         pattern = "rug_border" if classic else "boucle"
     if form == "shaggy":
         pattern = "boucle"
-    ground = scheme.soft if max(scheme.soft.color) > 0.1 or pattern != "boucle" else scheme.second
-    light = CLOTH_GROUNDS if max(ground.color) < 0.45 else shade(rng, FABRICS["taupe_cloth"], 0.3)
-    weave = Finish("rug", shade(rng, ground.color, 0.08), 0.95, pattern=pattern, density=250, second=None if pattern == "boucle" else light)
+    ground = finishes.soft if max(finishes.soft.color) > 0.1 or pattern != "boucle" else finishes.second
+    light = CLOTH_GROUNDS if max(ground.color) < 0.45 else tint(rng, COLORS["taupe_cloth"], 0.3)
+    weave = Finish("rug", tint(rng, ground.color, 0.08), 0.95, pattern=pattern, density=250, second=None if pattern == "boucle" else light)
     if form == "round":
         return Shape(pieces("rug", slab(circle(w / 2, 40), (0.0, h), min(0.004, 0.3 * h)), weave))
     fringe = 0.06 if form == "fringed" else 0.0
@@ -126,15 +113,15 @@ def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, schem
     return Shape(parts)
 
 
-def curtain(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def curtain(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build curtains on a rod with knobs and rings: two panels drawn aside, or one sheet over the whole width."""
-    cloth = scheme.soft if "leather" not in scheme.soft.pattern else cover(rng, "linen")
+    cloth = finishes.soft if "leather" not in finishes.soft.pattern else cover(rng, "linen")
     rod_z = h - 0.03
     bar = [rod((-w / 2 + 0.03, 0, rod_z), (w / 2 - 0.03, 0, rod_z), 0.012, n=8)]
     for s in (-1, 1):
         bar.append(rod((s * (w / 2 - 0.03), 0, rod_z), (s * w / 2, 0, rod_z), 0.02, 0.012, 8))
         bar.append(box(around(0.008, s * (w / 2 - 0.06)), (0.012, d / 2), around(0.01, rod_z)))
-    parts = pieces("rod", bar, scheme.handle)
+    parts = pieces("rod", bar, finishes.handle)
     share = float(rng.uniform(0.16, 0.24)) if form == "drawn" else 0.5
     for s in (-1, 1):
         outer, inner = s * (w / 2 - 0.07), s * (w / 2 - 0.07 - share * (w - 0.14) + (0.002 if form != "drawn" else 0.0))
@@ -154,9 +141,9 @@ def _panel(start: float, end: float, d: float, h: float, cloth: Material) -> Pie
     return pieces("cloth", band(path, 0.006, (0.0, h)), cloth)
 
 
-def cushion_pillow(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def cushion_pillow(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a throw pillow: square or oblong, or a round one."""
-    cloth = scheme.second if rng.random() < 0.5 else scheme.soft
+    cloth = finishes.second if rng.random() < 0.5 else finishes.soft
     if form == "round":
         rims: list[Solid] = ring((0.44 * w, 0.5 * w), (0.2 * w, 0.2 * w), (0.0, 0.5 * h), 20)
         rims += ring((0.5 * w, 0.44 * w), (0.2 * w, 0.2 * w), (0.5 * h, h), 20)
@@ -165,16 +152,16 @@ def cushion_pillow(rng: np.random.Generator, form: str, w: float, d: float, h: f
     return Shape(pieces("pillow", pillow(around(w / 2), around(d / 2), (0.0, h), 3), cloth))
 
 
-def terry(rng: np.random.Generator, scheme: Scheme) -> Finish:
+def terry(rng: np.random.Generator, finishes: Finishes) -> Finish:
     """Draw the cloth of a towel: one in three in the colour of the style's covers."""
     name = one_of(rng, TERRY)
-    color = scheme.soft.color if rng.random() < 0.33 else FABRICS[name]
-    return Finish("terry", shade(rng, color, 0.08), 0.95, pattern="boucle", density=150)
+    color = finishes.soft.color if rng.random() < 0.33 else COLORS[name]
+    return Finish("terry", tint(rng, color, 0.08), 0.95, pattern="boucle", density=150)
 
 
-def towel(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def towel(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a towel over a rail, two of them side by side, or one through a ring; the back is at the wall (+y)."""
-    cloth, metal = terry(rng, scheme), scheme.handle
+    cloth, metal = terry(rng, finishes), finishes.handle
     if form == "ring":
         plate = box((-0.025, 0.025), (d / 2 - 0.012, d / 2), (h - 0.06, h - 0.01), 0.003)
         arm = rod((0.0, d / 2 - 0.012, h - 0.035), (0.0, 0.0, h - 0.035), 0.008)
@@ -190,7 +177,7 @@ def towel(rng: np.random.Generator, form: str, w: float, d: float, h: float, sch
     parts = pieces("rail", bar, metal)
     if form == "single":
         return Shape(parts + _towel_over_bar(around(0.4 * w), d, z, z, cloth, rng))
-    other = terry(rng, scheme)
+    other = terry(rng, finishes)
     left = _towel_over_bar((-0.46 * w, -0.02 * w), d, z, z, cloth, rng)
     return Shape(parts + left + _towel_over_bar((0.02 * w, 0.46 * w), d, z, 0.8 * z, other, rng))
 
@@ -199,41 +186,36 @@ def _towel_over_bar(x: Interval, d: float, top: float, drop: float, cloth: Finis
     """Return a towel over a bar at height `top`: the front fall `drop` long, the back one a little shorter, a border near the hem."""
     t, half = 0.012, 0.016
     front, back = top - drop, top - drop * float(rng.uniform(0.75, 0.9))
-    falls = [
-        cushion(x, (-half - t, -half), (front, top + 0.006), 0.005),
-        cushion(x, (half, half + t), (back, top + 0.006), 0.005),
-        cushion(x, around(half + t), (top + 0.004, top + 0.018), 0.006),
-    ]
+    falls = [cushion(x, y, (low, top + 0.006), 0.005) for y, low in (((-half - t, -half), front), ((half, half + t), back))]
+    falls.append(cushion(x, around(half + t), (top + 0.004, top + 0.018), 0.006))
     hem = replace(cloth, name="hem", color=tuple(0.75 * c for c in cloth.color), pattern="weave")  # type: ignore[arg-type]
     band = box(inset(x, 0.001), (-half - t - 0.0015, -half - t + 0.001), (front + 0.05, front + 0.085))
     return pieces("towel", falls, cloth) + pieces("hem", band, hem)
 
 
-def folded_towels(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def folded_towels(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a pile of folded towels, or three rolled ones."""
     parts: Pieces = ()
     if form == "rolled":
         r = min(w / 4, h / 3.6)
         spots = [(-r, r), (r, r), (0.0, r + 1.7 * r)]
         for x, z in spots:
-            roll = slab(circle(r, 16), around(d / 2), 0.25 * r).turned("x", math.pi / 2).moved((x, 0, z))
-            parts += pieces("towel", roll, terry(rng, scheme))
+            roll = slab(circle(r, 16), around(d / 2), 0.25 * r).rotate("x", math.pi / 2).translate((x, 0, z))
+            parts += pieces("towel", roll, terry(rng, finishes))
         return Shape(parts)
     count = max(2, round(h / 0.05))
     for k in range(count):
-        cloth = terry(rng, scheme)
+        cloth = terry(rng, finishes)
         dx, dy = (float(v) for v in rng.uniform(-0.012, 0.012, 2))
-        span = (k * h / count, (k + 1) * h / count - 0.001)
-        parts += pieces(
-            "towel", cushion((-w / 2 + 0.012 + dx, w / 2 - 0.012 + dx), (-d / 2 + 0.012 + dy, d / 2 - 0.012 + dy), span, 0.02, 3), cloth
-        )
+        across, along = (-w / 2 + 0.012 + dx, w / 2 - 0.012 + dx), (-d / 2 + 0.012 + dy, d / 2 - 0.012 + dy)
+        parts += pieces("towel", cushion(across, along, (k * h / count, (k + 1) * h / count - 0.001), 0.02, 3), cloth)
     return Shape(parts)
 
 
-def throw(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def throw(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a folded blanket with fringes at one side."""
     pattern = pick(rng, "knit check stripe boucle")
-    cloth = Finish("throw", shade(rng, scheme.second.color, 0.1), 0.95, pattern=pattern, density=120)  # type: ignore[arg-type]
+    cloth = Finish("throw", tint(rng, finishes.second.color, 0.1), 0.95, pattern=pattern, density=120)  # type: ignore[arg-type]
     layers = [cushion(around(w / 2), (-d / 2 + 0.04, d / 2), z, 0.4 * h / 3, 2) for z in split((0.0, h), 3)]
     yarn = replace(cloth, name="yarn", pattern="plain")
     xs = np.linspace(-w / 2 + 0.02, w / 2 - 0.032, 12).tolist()
@@ -241,56 +223,53 @@ def throw(rng: np.random.Generator, form: str, w: float, d: float, h: float, sch
     return Shape(pieces("throw", layers, cloth) + pieces("yarn", ends, yarn))
 
 
-def bath_mat(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def bath_mat(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a bath mat: of terry with a border, or of wooden slats."""
     if form == "slats":
         count = max(5, round(w / 0.09))
         step = w / count
         slats = [box((-w / 2 + k * step, -w / 2 + (k + 0.8) * step), around(d / 2), (0.3 * h, h), 0.002) for k in range(count)]
         slats += [box(around(w / 2), around(0.015, s * 0.35 * d), (0.0, 0.3 * h)) for s in (-1, 1)]
-        return Shape(pieces("mat", slats, scheme.timber))
-    cloth = terry(rng, scheme)
+        return Shape(pieces("mat", slats, finishes.timber))
+    cloth = terry(rng, finishes)
     pile = replace(cloth, name="pile", color=tuple(0.85 * c for c in cloth.color))  # type: ignore[arg-type]
     mat = board(around(w / 2), around(d / 2), (0.0, 0.75 * h), 0.03, 2)
-    return Shape(
-        pieces("mat", mat, cloth) + pieces("pile", board(around(w / 2 - 0.05), around(d / 2 - 0.05), (0.75 * h, h), 0.02, 2), pile)
-    )
+    field = board(around(w / 2 - 0.05), around(d / 2 - 0.05), (0.75 * h, h), 0.02, 2)
+    return Shape(pieces("mat", mat, cloth) + pieces("pile", field, pile))
 
 
-def blind(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def blind(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a blind: a roller with its cloth, a pleated Roman one, or slats; the back is at the wall (+y)."""
-    color = FABRICS[pick(rng, "cream_cloth linen grey_cloth snow_cloth taupe_cloth")]
-    cloth = Finish("blind", shade(rng, color, 0.06), 0.9, pattern="weave", density=300)
+    color = COLORS[pick(rng, "cream_cloth linen grey_cloth snow_cloth taupe_cloth")]
+    cloth = Finish("blind", tint(rng, color, 0.06), 0.9, pattern="weave", density=300)
     top = h - 0.05
     rail = box(around(w / 2), around(d / 2), (top, h), 0.004)
     if form == "roller":
         sheet = box(around(w / 2 - 0.01), (-0.0015, 0.0015), (0.02, top))
         hem = rod((-w / 2 + 0.01, 0, 0.012), (w / 2 - 0.01, 0, 0.012), 0.012, n=8)
-        return Shape(pieces("rail", rail, scheme.handle) + pieces("cloth", [sheet, hem], cloth))
+        return Shape(pieces("rail", rail, finishes.handle) + pieces("cloth", [sheet, hem], cloth))
     x = around(w / 2 - 0.005)
     if form == "roman":
         folds = max(3, round(h / 0.22))
         laps = [cushion(x, around(0.42 * d), (low, high - 0.004), 0.3 * d, 2) for low, high in split((0.0, top), folds)]
         return Shape(pieces("rail", rail, cloth) + pieces("cloth", laps, cloth))
-    timber = scheme.timber if rng.random() < 0.6 else "slat"
-    slat = box(x, around(0.4 * d), (-0.0015, 0.0015)).turned("x", 0.6)
+    timber = finishes.timber if rng.random() < 0.6 else "slat"
+    slat = box(x, around(0.4 * d), (-0.0015, 0.0015)).rotate("x", 0.6)
     levels = split((0.0, top), max(8, round(top / 0.05)))
-    slats = [slat.moved((0, 0, (low + high) / 2)) for low, high in levels]
+    slats = [slat.translate((0, 0, (low + high) / 2)) for low, high in levels]
     cords = [box(around(0.003, s * 0.35 * w), (-0.003, 0.003), (0.0, top)) for s in (-1, 1)]
     return Shape(pieces("rail", rail, timber) + pieces("slats", slats, timber) + pieces("cords", cords, cloth))
 
 
-def paper_holder(rng: np.random.Generator, form: str, w: float, d: float, h: float, scheme: Scheme) -> Shape:
+def paper_holder(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a roll of paper on an arm, or on one under a lid; the back is at the wall (+y)."""
     r = 0.42 * h
-    arm = [
-        box((-w / 2, -w / 2 + 0.014), (d / 2 - 0.012, d / 2), (0.3 * h, 0.9 * h), 0.002),
-        box((-w / 2, -w / 2 + 0.014), (d / 2 - r - 0.03, d / 2 - 0.012), (0.54 * h, 0.62 * h), 0.002),
-        box((-w / 2 + 0.014, w / 2), (d / 2 - r - 0.03, d / 2 - r - 0.018), (0.54 * h, 0.62 * h), 0.002),
-    ]
+    side, z, front = (-w / 2, -w / 2 + 0.014), (0.54 * h, 0.62 * h), d / 2 - r - 0.03
+    arm = [box(side, (d / 2 - 0.012, d / 2), (0.3 * h, 0.9 * h), 0.002), box(side, (front, d / 2 - 0.012), z, 0.002)]
+    arm.append(box((side[1], w / 2), (front, d / 2 - r - 0.018), z, 0.002))
     if form == "lid":
         arm.append(box((-w / 2 + 0.01, w / 2), around(d / 2), (h - 0.004, h)))
-    roll = standing([slab(circle(r, 20), around(0.38 * w), 0.002)], (0, 0, 0))[0].turned("z", math.pi / 2)
+    roll = stand_up([slab(circle(r, 20), around(0.38 * w), 0.002)], (0, 0, 0))[0].rotate("z", math.pi / 2)
     sheet = box(around(0.36 * w), (d / 2 - 2 * r - 0.024, d / 2 - 2 * r - 0.022), (0.0, 0.45 * h))
-    placed = roll.moved((0.005, d / 2 - r - 0.024, 0.5 * h))
-    return Shape(pieces("arm", arm, scheme.handle) + pieces("roll", [placed, sheet], "paper"))
+    placed = roll.translate((0.005, d / 2 - r - 0.024, 0.5 * h))
+    return Shape(pieces("arm", arm, finishes.handle) + pieces("roll", [placed, sheet], "paper"))

@@ -22,6 +22,10 @@ from pipeline.style import Color
 Tones = NDArray[np.float64]
 SIDE = 512  # pixels of a pattern's master, which repeats
 _ROWS, _COLUMNS = np.fft.fftfreq(SIDE), np.fft.rfftfreq(SIDE)  # [per pixel]
+_Y, _X = np.arange(SIDE)[:, None], np.arange(SIDE)[None, :]
+_WARP = np.where((_X // 2 + _Y // 2) % 2 == 0, 1.0, -1.0)  # of a plain weave: which thread lies on top
+_LOOPS = np.sin(2 * math.pi * _X / 8) + 0.5 * np.sin(2 * math.pi * (_Y / 4 + np.abs(_X % 8 - 4) / 4))  # of a knit
+_HOLES = ((_X + _Y) % 8 >= 2) & ((_X - _Y) % 8 >= 2) & (_X % 8 >= 2) & (_Y % 8 >= 2)  # between strands of cane
 SCALE = 256.0  # [pixels per metre] of the masters: they span two metres
 # How far from its colour a finish goes, as a share of it, where it has no second colour.
 CONTRAST: Mapping[str, float] = {
@@ -72,22 +76,9 @@ def _speckle(rng: np.random.Generator) -> Tones:
 
 
 def _grain(rng: np.random.Generator) -> Tones:
-    x = np.arange(SIDE)[None, :]
     bend = _noise(rng, 60, 40)
-    rings = np.sin(2 * math.pi * (x / SIDE * 22 + 3.5 * bend / np.abs(bend).max()))
+    rings = np.sin(2 * math.pi * (_X / SIDE * 22 + 3.5 * bend / np.abs(bend).max()))
     return _spread(0.35 * rings + 1.1 * _spread(_noise(rng, 14, 0.6)) + 0.6 * _spread(_noise(rng, 90, 5)))
-
-
-def _weave(rng: np.random.Generator) -> Tones:
-    y, x = np.indices((SIDE, SIDE))
-    plain = np.where((x // 2 + y // 2) % 2 == 0, 1.0, -1.0)
-    slubs = _spread(_noise(rng, 0.5, 7)) + _spread(_noise(rng, 7, 0.5))
-    return _spread(0.5 * plain + 0.8 * slubs)
-
-
-def _knit(rng: np.random.Generator) -> Tones:
-    y, x = np.indices((SIDE, SIDE))
-    return _spread(np.sin(2 * math.pi * x / 8) + 0.5 * np.sin(2 * math.pi * (y / 4 + np.abs((x % 8) - 4) / 4)) + 0.3 * _speckle(rng))
 
 
 def _concrete(rng: np.random.Generator) -> Tones:
@@ -106,25 +97,10 @@ def _terrazzo(rng: np.random.Generator) -> Tones:
     return np.where(chips > 1.1 * chips.std(), 0.55 + 0.45 * _spread(_noise(rng, 6, 6)), 0.06 * _speckle(rng))
 
 
-def _stripe(rng: np.random.Generator) -> Tones:
-    return np.where(np.arange(SIDE)[None, :] % 32 < 11, 0.95, 0.05) + 0.05 * _speckle(rng)
-
-
-def _check(rng: np.random.Generator) -> Tones:
-    y, x = np.indices((SIDE, SIDE))
-    return np.asarray(0.45 * ((x % 32) < 14) + 0.45 * ((y % 32) < 14) + 0.1 * _speckle(rng))
-
-
-def _cane(rng: np.random.Generator) -> Tones:
-    y, x = np.indices((SIDE, SIDE))
-    open_ = ((x + y) % 8 >= 2) & ((x - y) % 8 >= 2) & (x % 8 >= 2) & (y % 8 >= 2)
-    return np.where(open_, 0.85, 0.0) + 0.1 * _speckle(rng)
-
-
 _MASTERS: Mapping[str, Callable[[np.random.Generator], Tones]] = {
     "grain": _grain,
-    "weave": _weave,
-    "knit": _knit,
+    "weave": lambda rng: _spread(0.5 * _WARP + 0.8 * (_spread(_noise(rng, 0.5, 7)) + _spread(_noise(rng, 7, 0.5)))),
+    "knit": lambda rng: _spread(_LOOPS + 0.3 * _speckle(rng)),
     "boucle": lambda rng: _spread(_noise(rng, 1.6, 1.6)),
     "velvet": lambda rng: _spread(_spread(_noise(rng, 22, 22)) + 0.2 * _spread(_noise(rng, 2, 2))),
     "leather": lambda rng: _spread(np.abs(_noise(rng, 2.2, 2.2)) ** 0.5),
@@ -132,10 +108,10 @@ _MASTERS: Mapping[str, Callable[[np.random.Generator], Tones]] = {
     "concrete": _concrete,
     "marble": _marble,
     "terrazzo": _terrazzo,
-    "stripe": _stripe,
-    "check": _check,
+    "stripe": lambda rng: np.where(_X % 32 < 11, 0.95, 0.05) + 0.05 * _speckle(rng),
+    "check": lambda rng: np.asarray(0.45 * (_X % 32 < 14) + 0.45 * (_Y % 32 < 14) + 0.1 * _speckle(rng)),
     "floral": lambda rng: _petals(rng) + 0.04 * _speckle(rng),
-    "cane": _cane,
+    "cane": lambda rng: np.where(_HOLES, 0.85, 0.0) + 0.1 * _speckle(rng),
     "leaf": lambda rng: _spread(_noise(rng, 8, 8)),
 }
 
@@ -166,10 +142,6 @@ def _rug_diamonds(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -
     cells = rng.integers(3, 6)
     u = np.abs((x * aspect * cells) % 1 - 0.5) + np.abs((y * cells) % 1 - 0.5)
     return np.where(np.abs(u - 0.5) < 0.06, 1.0, np.where(u < 0.16, 0.8, 0.05))
-
-
-def _rug_stripes(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> Tones:
-    return np.asarray(rng.uniform(0, 1, 10)[np.searchsorted(np.sort(rng.random(9)), y)])
 
 
 def _art_hills(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> Tones:
@@ -217,7 +189,7 @@ def _dial(rng: np.random.Generator, x: Tones, y: Tones, aspect: float) -> Tones:
 _DRAWN: Mapping[str, Callable[[np.random.Generator, Tones, Tones, float], Tones]] = {
     "rug_border": _rug_border,
     "rug_diamonds": _rug_diamonds,
-    "rug_stripes": _rug_stripes,
+    "rug_stripes": lambda rng, _, y, __: np.asarray(rng.uniform(0, 1, 10)[np.searchsorted(np.sort(rng.random(9)), y)]),
     "art_hills": _art_hills,
     "art_circles": _art_circles,
     "art_lines": _art_lines,

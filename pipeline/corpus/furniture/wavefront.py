@@ -120,11 +120,8 @@ def mtl(groups: Iterable[Group], texture: str) -> bytes:
         finish = group.finish
         gloss = 0.5 if finish.metallic else 0.1
         lines += [f"newmtl {group.material}", "illum 2", "Ka 0 0 0", "Kd {:g} {:g} {:g}".format(*srgb(finish.color))]
-        lines += [
-            f"Ks {gloss:g} {gloss:g} {gloss:g}",
-            f"Ns {min(900.0, max(1.0, 2 / finish.roughness**4 - 2)):.1f}",
-            f"d {finish.opacity:g}",
-        ]
+        shininess = min(900.0, max(1.0, 2 / finish.roughness**4 - 2))
+        lines += [f"Ks {gloss:g} {gloss:g} {gloss:g}", f"Ns {shininess:.1f}", f"d {finish.opacity:g}"]
         if finish.metallic:
             lines.append(f"Pm {finish.metallic:g}")
         if finish.opacity == 1.0:

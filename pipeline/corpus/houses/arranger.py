@@ -2,7 +2,7 @@
 
 import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -58,37 +58,36 @@ class Arranger:
 
     def pick(self, category: str, width: float = math.inf, depth: float = math.inf, height: float = math.inf) -> Model | None:
         """Draw a model of the category within the limits [m]."""
-        return self.stock.pick(self.rng, category, self.style, width=width, depth=depth, height=min(height, self.space.height - 0.02))
+        return self.stock.pick(self.rng, category, self.style, (width, depth, min(height, self.space.height - 0.02)))
 
-    def at_wall(self, category: str, *, corner: float = 0.6, sides: Sequence[int] | None = None, tries: int = 3) -> bool:
+    def smaller(self, category: str, tries: int, by: float, width: float = math.inf, depth: float = math.inf) -> Iterator[Model]:
+        """Draw models of the category within the limits [m] to try in turn: each at most `by` times as wide as the one before."""
+        for _ in range(tries):
+            model = self.pick(category, width=width, depth=depth)
+            if model is None:
+                return
+            yield model
+            width = model.size[0] * by
+
+    def at_wall(self, category: str, *, corner: float = 0.6, tries: int = 3) -> bool:
         """Put a piece of the category with its back to a wall, its front free; smaller models after a failure."""
         front = free_front(category, 0.35)
-        width = math.inf
-        for _ in range(tries):
-            model = self.pick(category, width=width)
-            if model is None:
-                return False
-            spot = against(self.rng, self.space, model, front=front, corner=corner, sides=sides)
-            if spot is not None and self.space.try_add(model, spot, keep=[ahead(spot, model.size[1], front, model.size[0])]):
+        for model in self.smaller(category, tries, 0.95):
+            spot = against(self.rng, self.space, model, front=front, corner=corner)
+            if spot is not None and self.space.try_add(model, spot, clearances=[ahead(spot, model.size[1], front, model.size[0])]):
                 return True
-            width = model.size[0] * 0.95
         return False
 
     def pair_at_wall(self, table: str) -> bool:
         """Put a desk or dressing table to a wall and the seat that the room chooses ("none": none) before it, facing it."""
         seat = self.pick(self.choose(f"{table.removesuffix('_table')}_seat"))
         front = max(free_front(table, 0.0), seat.size[1] + 0.15 if seat else 0.0)
-        width = math.inf
-        for _ in range(6):
-            desk = self.pick(table, width=width)
-            if desk is None:
-                return False
+        for desk in self.smaller(table, 6, 0.9):
             spot = against(self.rng, self.space, desk, front=front, corner=0.55)
             if spot is not None and self.space.try_add(desk, spot):
                 if seat is None or self._sit(seat, spot, desk.size[1]):
                     return True
                 self.space.take_back()
-            width = desk.size[0] * 0.9
         return False
 
     def _sit(self, seat: Model, spot: Spot, depth: float) -> bool:
@@ -120,8 +119,10 @@ class Arranger:
     def on_wall(self, category: str, low: float) -> bool:
         """Fix a piece to a wall, its underside `low` above the floor."""
         model = self.pick(category, height=self.space.height - low - 0.05)
-        spot = None if model is None else against(self.rng, self.space, model, front=0.0, corner=0.0, low=low)
-        return model is not None and spot is not None and self.space.try_add(model, spot, low)
+        if model is None:
+            return False
+        spot = against(self.rng, self.space, model, front=0.0, corner=0.0, low=low)
+        return spot is not None and self.space.try_add(model, spot, low)
 
     def lamp(self, category: str, x: float, y: float, yaw: float = 0.0) -> bool:
         """Hang a lamp at (x, y) under the ceiling."""

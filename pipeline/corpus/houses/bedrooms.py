@@ -8,11 +8,8 @@ from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.room_occupancy import Spot, ahead, back_gap, on_side, shift_spot
 
-FARTHEST_TV = 1.2
-"""Most free floor between a bed's foot and the TV stand [m]."""
-FOOT = 0.6
-SIDE = 0.5
-"""Free floor at the foot and beside a bed [m]."""
+FARTHEST_TV = 1.2  # most free floor between a bed's foot and the TV stand [m]
+FOOT, SIDE = 0.6, 0.5  # free floor at the foot and beside a bed [m]
 BESIDE = ((0.52, 0.75), (0.47, 0.62), (0.42, 0.52), (0.4, 0.45))
 """What is left beside a double bed, for nightstands and to get in, drawn from a range at each attempt: less, before the bed becomes a smaller one [m]."""
 SEATS = frozenset({"armchair", "lounge_chair", "lazy_sofa", "chaise_longue_sofa", "stool", "plant", "floor_lamp"})
@@ -79,12 +76,12 @@ def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
             weights = np.array([w for w, _ in candidates])
             spot = candidates[int(rng.choice(len(candidates), p=weights / weights.sum()))][1]
             w, d, _ = model.size
-            keep = [shift_spot(spot, 0.0, d / 2 + FOOT / 2).box(w * 0.8, FOOT)]
+            clearances = [shift_spot(spot, 0.0, d / 2 + FOOT / 2).box(w * 0.8, FOOT)]
             for sign in (-1, 1):
                 lane = shift_spot(spot, sign * (w / 2 + SIDE / 2), 0.3).box(SIDE, d - 0.6)
                 if space.clear(lane):
-                    keep.append(lane)
-            space.add(model, spot, keep=keep)
+                    clearances.append(lane)
+            space.add(model, spot, clearances=clearances)
             return model, spot
         if attempt >= 1:
             width = max(model.size[0] * 0.96, arranger.stock.least(category)[0])
@@ -107,12 +104,8 @@ def _bed_spots(arranger: Arranger, model: Model, beside: float) -> list[tuple[fl
             if room < w + 2 * beside:
                 continue
             middle = (a + b) / 2 + float(rng.normal(0, 0.08)) if room > w + 2 * beside + 0.2 else (a + b) / 2
-            candidates.append(
-                (
-                    3.0 * (1.0 + min(room - w, 2.5)),
-                    on_side(space, i, float(np.clip(middle, a + w / 2 + beside, b - w / 2 - beside)), d, gap),
-                )
-            )
+            at = float(np.clip(middle, a + w / 2 + beside, b - w / 2 - beside))
+            candidates.append((3.0 * (1.0 + min(room - w, 2.5)), on_side(space, i, at, d, gap)))
             lean = w / 2 + (beside or 0.005 + abs(float(rng.normal(0, 0.02))))
             if room > w + 2 * beside + 0.4:
                 candidates += [(aside, on_side(space, i, a + lean, d, gap)), (aside, on_side(space, i, b - lean, d, gap))]
@@ -144,11 +137,7 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
     space = arranger.space
     model, spot = bed
     facing = [i for i, s in enumerate(space.sides) if abs(np.cos(s.yaw - spot.yaw) + 1) < 1e-6]
-    width = 2.4
-    for _ in range(3):
-        stand = arranger.pick("tv_stand", width=width, depth=0.55)
-        if stand is None:
-            return False
+    for stand in arranger.smaller("tv_stand", 3, 0.9, width=2.4, depth=0.55):
         for i in facing:
             side = space.sides[i]
             s, _ = side.along((spot.x, spot.y, spot.x, spot.y))
@@ -156,11 +145,9 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
                 continue
             place = on_side(space, i, s + float(arranger.rng.normal(0, 0.04)), stand.size[1], back_gap(arranger.rng))
             away = abs((place.x - spot.x) * np.sin(spot.yaw) - (place.y - spot.y) * np.cos(spot.yaw))
-            if 0.6 < away - model.size[1] / 2 - stand.size[1] / 2 < FARTHEST_TV and space.try_add(
-                stand, place, keep=[ahead(place, stand.size[1], 0.4, stand.size[0])]
-            ):
+            before = ahead(place, stand.size[1], 0.4, stand.size[0])
+            if 0.6 < away - model.size[1] / 2 - stand.size[1] / 2 < FARTHEST_TV and space.try_add(stand, place, clearances=[before]):
                 return True
-        width = stand.size[0] * 0.9
     return False
 
 

@@ -14,28 +14,23 @@ from shapely.geometry import Point, Polygon
 from pipeline import taxonomy
 from pipeline.corpus import front_statistics
 from pipeline.corpus.furniture.catalogue import Model
+from pipeline.corpus.furniture.finishes import one_of
 from pipeline.corpus.houses.records import House, Item
 from pipeline.corpus.houses.stock import Stock
 from pipeline.seeds import generator
 
-REPLACED = 0.09
-"""Share of furniture whose model was replaced by another, scaled to the old size (40 of 497 records)."""
-OUTWARDS = 0.24
-"""Share of what stands on the floor, beds apart, that is pushed through a wall, where one is near."""
-INTO = 0.36
-"""Share that is pushed into a neighbour, where one is near; chairs under tables overlap besides."""
-FAR = 0.25
-"""Share of the pushed pieces that end half outside, or half in their neighbour; the others by a few centimetres."""
+REPLACED = 0.09  # share of furniture whose model was replaced by another, scaled to the old size (40 of 497 records)
+OUTWARDS = 0.24  # share of what stands on the floor, beds apart, that is pushed through a wall, where one is near
+INTO = 0.36  # share that is pushed into a neighbour, where one is near; chairs under tables overlap besides
+FAR = 0.25  # share of the pushed pieces that end half outside, or half in their neighbour; the others by a few centimetres
 DOUBLE_CHILD = 0.002
 SHAFT_ROOM = 0.15
 MIRRORED, MIRRORED_L_SOFAS = 0.004, 0.2
 """Share of valid furniture with a mirrored scale (2 of 288, both L-shaped sofas); the other mirrored children dangle."""
-NEAR = 0.8
-"""Nothing is pushed farther than this [m]."""
+NEAR = 0.8  # nothing is pushed farther than this [m]
 IN_ORDER = frozenset({"double_bed", "nightstand", "tv_stand", "coffee_table"})
 """What is never pushed: these stand in line within centimetres in the 12 scenes."""
-LOW = 1.0
-"""What starts higher hangs [m]."""
+LOW = 1.0  # what starts higher hangs [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +73,10 @@ def disturb(rng: np.random.Generator, house: House, stock: Stock) -> House:
     pieces = [k for k, i in enumerate(items) if i.support < 0 and taxonomy.load().categories[i.model.category].layout]
     for k in pieces:
         if k not in carried:
-            items[k] = _mirror_item(rng, _swap_model(rng, items[k], stock))
+            item = _swap_model(rng, items[k], stock)
+            if rng.random() < (MIRRORED_L_SOFAS if item.model.category == "l_shaped_sofa" else MIRRORED):
+                item = dataclasses.replace(item, scale=(-item.scale[0], item.scale[1], item.scale[2]))
+            items[k] = item
     standing = [k for k in pieces if items[k].position[2] < LOW]
     for k in standing:
         if items[k].model.category in IN_ORDER:
@@ -101,24 +99,12 @@ def _swap_model(rng: np.random.Generator, item: Item, stock: Stock) -> Item:
     if rng.random() >= REPLACED:
         return item
     w, d, h = item.model.size
-    similar = [
-        m
-        for m in stock.by_category[item.model.category]
-        if m.model_id != item.model.model_id and 0.75 < w / m.size[0] < 1.3 and 0.75 < d / m.size[1] < 1.3 and abs(m.size[2] - h) < 0.1
-    ]
+    others = [m for m in stock.by_category[item.model.category] if m.model_id != item.model.model_id]
+    similar = [m for m in others if 0.75 < w / m.size[0] < 1.3 and 0.75 < d / m.size[1] < 1.3 and abs(m.size[2] - h) < 0.1]
     if not similar:
         return item
-    model = similar[int(rng.integers(len(similar)))]
-    # A piece that hangs keeps its height.
-    up = h / model.size[2]
-    return dataclasses.replace(item, model=model, scale=(w / model.size[0], d / model.size[1], up))
-
-
-def _mirror_item(rng: np.random.Generator, item: Item) -> Item:
-    share = MIRRORED_L_SOFAS if item.model.category == "l_shaped_sofa" else MIRRORED
-    if rng.random() >= share:
-        return item
-    return dataclasses.replace(item, scale=(-item.scale[0], item.scale[1], item.scale[2]))
+    model = one_of(rng, similar)
+    return dataclasses.replace(item, model=model, scale=(w / model.size[0], d / model.size[1], h / model.size[2]))
 
 
 def _outwards(rng: np.random.Generator, item: Item, floor: Polygon) -> Item:

@@ -5,8 +5,6 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from pipeline import taxonomy
 from pipeline.corpus import front_statistics
 from pipeline.corpus.houses import bedrooms, kitchens, living, rates, small_things
@@ -48,7 +46,7 @@ def furnish_room(
         return ()
     openings = [o for o in plan.openings if room.room_id in o.rooms]
     chances = rates.load()
-    best: tuple[tuple[int, int, int], Arranger] | None = None
+    tries: list[tuple[tuple[int, int, int], Arranger]] = []
     for attempt in range(TRIES):
         rng = generator(seed, "furnish", index, number, attempt)
         space = Space(number, room, openings)
@@ -59,15 +57,13 @@ def furnish_room(
         cut_off, far = problems(space)
         present = {i.model.category for i in space.items}
         missing = sum(present.isdisjoint(wanted) for wanted in chances["musts"].get(kind, ()))
-        score = (missing, cut_off, len(far))
-        if best is None or score < best[0]:
-            best = score, arranger
-        if score == (0, 0, 0):
+        tries.append(((missing, cut_off, len(far)), arranger))
+        if not any(tries[-1][0]):
             break
-    assert best is not None
-    tidy(best[1].space)
-    small_things.add_small_things(best[1], openings, kind)
-    return tuple(best[1].space.items)
+    best = min(tries, key=lambda attempt: attempt[0])[1]
+    tidy(best.space)
+    small_things.add_small_things(best, openings, kind)
+    return tuple(best.space.items)
 
 
 def tidy(space: Space) -> None:
@@ -96,17 +92,12 @@ def _culprit(space: Space, standing: list[int]) -> int:
     return -min(scores)[1]
 
 
-def style_of(rng: np.random.Generator, stock: Stock) -> str:
-    """Draw the style that a house prefers."""
-    return str(rng.choice(list(stock.styles))) if stock.styles else ""
-
-
 def make_house(seed: int, index: int, stock: Stock) -> House:
     """Plan and furnish house `index`."""
     rng = generator(seed, "house", index)
     wanted = agenda(seed, index)
     plan = make_plan(rng, wanted.rooms)
-    style = style_of(rng, stock)
+    style = str(rng.choice(stock.styles)) if stock.styles else ""  # what the house prefers
     rich = set(rooms_to_furnish(plan, wanted.rooms))
     beyond, bare = front_statistics.load().beyond, rates.load()["bare"]
     items: list[Item] = []

@@ -4,40 +4,29 @@ from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger, free_front
 from pipeline.corpus.houses.room_occupancy import ahead, on_side
 
-FRONT = 0.75
-"""Free floor before a run: an open door and a cook [m]."""
+FRONT = 0.75  # free floor before a run: an open door and a cook [m]
 SEAM = 0.002
-SMALL = 7.0
-"""Kitchens of less floor have no other wall for a refrigerator [m2]."""
+SMALL = 7.0  # kitchens of less floor have no other wall for a refrigerator [m2]
 NEEDED = frozenset({"sink_cabinet", "oven", "refrigerator", "kitchen_cabinet"})
 """Nobody cooks without one of each: their least widths are kept free until they stand."""
-HUNG_AT = 1.45
-"""Underside of the wall units [m]."""
+HUNG_AT = 1.45  # underside of the wall units [m]
 
 
 def furnish_kitchen(arranger: Arranger) -> None:
     """Furnish a kitchen with one run, or two that meet in a corner or face each other."""
-    wanted = ["sink_cabinet", "kitchen_cabinet", "oven"]
-    wanted += ["dishwasher"] if arranger.wants("dishwasher") else []
-    wanted += ["kitchen_cabinet"] if arranger.wants("second_cabinet") else []
-    middle = wanted[1:]
+    middle = ["kitchen_cabinet", "oven"]
+    middle += ["dishwasher"] if arranger.wants("dishwasher") else []
+    middle += ["kitchen_cabinet"] if arranger.wants("second_cabinet") else []
     arranger.rng.shuffle(middle)
     wanted = [*middle[:1], "sink_cabinet", *middle[1:], "kitchen_cabinet", "kitchen_cabinet", "kitchen_cabinet"]
     if arranger.wants("fridge_in_run") or arranger.space.area < SMALL:
         wanted = ["refrigerator", *wanted]
     left = run(arranger, wanted)
     if any(c != "kitchen_cabinet" for c in left):
-        left = run(
-            arranger,
-            ["kitchen_cabinet", *[c for c in left if c not in {"refrigerator", "kitchen_cabinet"}], "kitchen_cabinet", "kitchen_cabinet"],
-        )
+        appliances = [c for c in left if c not in {"refrigerator", "kitchen_cabinet"}]
+        run(arranger, ["kitchen_cabinet", *appliances, "kitchen_cabinet", "kitchen_cabinet"])
     if not any(i.model.category == "refrigerator" for i in arranger.space.items):
         arranger.at_wall("refrigerator", corner=0.95)
-    if arranger.wants("trash_can"):
-        arranger.in_corner("trash_can")
-    if arranger.space.area > 7.0 and arranger.wants("barstool"):
-        arranger.in_corner("barstool")
-    arranger.light()
 
 
 def run(arranger: Arranger, wanted: list[str]) -> list[str]:
@@ -65,7 +54,7 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
             continue
         s = a + at + model.size[0] / 2 if forward else b - at - model.size[0] / 2
         spot = on_side(space, i, s, model.size[1], 0.004)
-        if not space.try_add(model, spot, keep=[ahead(spot, model.size[1], free_front(category, 0.65), model.size[0])]):
+        if not space.try_add(model, spot, clearances=[ahead(spot, model.size[1], free_front(category, 0.65), model.size[0])]):
             left.append(category)
             continue
         placed.append((model, s))
@@ -86,8 +75,7 @@ def above(arranger: Arranger, side: int, placed: list[tuple[Model, float]]) -> N
     for model, s in base:
         if model.category == "kitchen_cabinet":
             oven = arranger.pick("microwave", width=model.size[0] - 0.02, depth=model.size[1] - 0.02)
-            spot = None if oven is None else on_side(space, side, s, oven.size[1], 0.05)
-            if oven is not None and spot is not None and space.try_add(oven, spot, model.size[2] + 0.001):
+            if oven is not None and space.try_add(oven, on_side(space, side, s, oven.size[1], 0.05), model.size[2] + 0.001):
                 return
 
 

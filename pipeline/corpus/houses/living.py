@@ -11,20 +11,13 @@ from pipeline.corpus.houses.rates import load
 from pipeline.corpus.houses.room_occupancy import Side, Space, Spot, ahead, back_gap, meets, on_side, shift_spot
 
 CHAIRS = {"two": 2, "four": 4, "six": 6, "eight": 8}
-ACROSS = 0.6
-"""Usual distance of a chair's middle from the table's long axis [m]: it reaches under a deep table."""
-UNDER = 0.35
-"""Most of a chair's depth that is under the table."""
-OFF_LAMP = 0.1
-"""Deviation of the lamp from the table's middle [m]."""
-DEEPEST = {2: 0.95, 4: 1.0, 6: 1.15, 8: 1.5}
-"""Depth of a table for so many, where there is one [m]."""
-BEHIND = 0.3
-"""Free floor behind a chair [m]."""
-SQUARE = 1.25
-"""Four sit around a table whose length is at most so many times its depth, one on each side."""
-SQUARE_SHARE = 0.35
-"""Share of the tables for four that are square, where there is one."""
+ACROSS = 0.6  # usual distance of a chair's middle from the table's long axis [m]: it reaches under a deep table
+UNDER = 0.35  # most of a chair's depth that is under the table
+OFF_LAMP = 0.1  # deviation of the lamp from the table's middle [m]
+DEEPEST = {2: 0.95, 4: 1.0, 6: 1.15, 8: 1.5}  # depth of a table for so many, where there is one [m]
+BEHIND = 0.3  # free floor behind a chair [m]
+SQUARE = 1.25  # four sit around a table whose length is at most so many times its depth, one on each side
+SQUARE_SHARE = 0.35  # share of the tables for four that are square, where there is one
 SIDE_TABLES = {"none": 0, "one": 1, "two": 2}
 
 
@@ -48,14 +41,15 @@ def _table(arranger: Arranger, count: int, chair: Model) -> Model | None:
     """Draw a table long enough for half of the chairs on each long side (with six and more, two may sit at the ends; with four, one at each side of a square)."""
     if count == 4 and arranger.chance(SQUARE_SHARE):
         least, most = chair.size[0] + 0.25, chair.size[0] + 0.6
-        square = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, width=most, depth=most, narrowest=least)
+        square = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, (most, most, math.inf), narrowest=least)
         if square is not None and _is_square(square):
             return square
     along = {2: 1, 4: 2, 6: 2 if arranger.chance(0.4) else 3, 8: 3}[count]
     need = along * (chair.size[0] + 0.04)
     most = {2: 1.5, 4: 1.9, 6: 2.5, 8: 3.2}[count]
     for depth in (DEEPEST[count], math.inf):
-        model = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, width=max(most, need + 0.3), depth=depth, narrowest=need)
+        limits = (max(most, need + 0.3), depth, math.inf)
+        model = arranger.stock.pick(arranger.rng, "dining_table", arranger.style, limits, narrowest=need)
         if model is not None:
             return model
     return None
@@ -128,12 +122,8 @@ def _place(arranger: Arranger, table: Model, chair: Model, count: int) -> bool:
             seat = shift_spot(seat, 0.0, -0.04, float(rng.choice([-1, 1]) * rng.uniform(0.05, 0.25)))
         space.try_add(chair, seat, under=under)
     if arranger.deal.mark("dining_lamp") < rates["lamp"]:
-        arranger.lamp(
-            "pendant_lamp",
-            spot.x + float(np.clip(rng.normal(0, OFF_LAMP), -0.16, 0.16)),
-            spot.y + float(rng.normal(0, OFF_LAMP / 3)),
-            spot.yaw,
-        )
+        dx, dy = float(np.clip(rng.normal(0, OFF_LAMP), -0.16, 0.16)), float(rng.normal(0, OFF_LAMP / 3))
+        arranger.lamp("pendant_lamp", spot.x + dx, spot.y + dy, spot.yaw)
     return True
 
 
@@ -263,7 +253,7 @@ def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None
         if table is not None:
             space.try_add(table, shift_spot(spot, float(rng.normal(0, 0.1)), d / 2 + table.size[1] / 2 + 0.35))
     if tv is not None:  # nobody dines between sofa and TV
-        space.keeps.append(ahead(spot, d, max(0.4, reach), min(1.4, sofa.size[0])))
+        space.clearances.append(ahead(spot, d, max(0.4, reach), min(1.4, sofa.size[0])))
     return Lounge(sofa, spot, placed)
 
 

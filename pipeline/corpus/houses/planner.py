@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeline.corpus import front_statistics
 from pipeline.corpus.houses import rates
 from pipeline.corpus.houses.rates import Deal
-from pipeline.entities.plan import Plan, Room
+from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan import solve
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Footprint, Link, LinkKind, Range, RoomReq, Shell, Style
@@ -21,26 +21,15 @@ ROOMS = rates.load()["rooms"]
 AREAS: dict[str, tuple[float, float, float, float]] = {name: room["area"] for name, room in ROOMS.items() if "area" in room}
 BEDROOMS = tuple(name for name, room in ROOMS.items() if room["plan"] == "bedroom")
 PRIVATE = (*BEDROOMS, "Library")
-LOW, HIGH = 0.85, 1.12
-"""Rooms are built no smaller than this part of the least area of their type, no larger than this part of the largest."""
-FEW = 3
-"""Rooms that may open off a living room without a corridor."""
+LOW, HIGH = 0.85, 1.12  # rooms are built no smaller than this part of the least area of their type, no larger than this part of the largest
+FEW = 3  # rooms that may open off a living room without a corridor
 SHAPES = {"rectangle": 0.3, "L": 0.4, "T": 0.3}
-BLOCK = 32
-"""Houses over which decisions are dealt evenly."""
-MOST_PRIVATE = 5
-"""Rooms that a plan can hold beside the living rooms."""
+BLOCK = 32  # houses over which decisions are dealt evenly
+MOST_PRIVATE = 5  # rooms that a plan can hold beside the living rooms
 CORRIDORS = ("Hallway", "Aisle", "Corridor")
-KINDS: Mapping[str, str] = {name: room["chances"] for name, room in rates.load()["rooms"].items()}  # whose chances furnish a type of room
+KINDS: Mapping[str, str] = {name: room["chances"] for name, room in ROOMS.items()}  # whose chances furnish a type of room
 PROGRAMS = 24
-LARGEST_AISLE = 3.1
-"""What is larger is called a corridor [m2]."""
-
-
-def area(rng: np.random.Generator, room_type: str) -> float:
-    """Draw an area [m2] for a room type."""
-    mean, spread, least, most = AREAS[room_type]
-    return float(np.clip(rng.normal(mean, spread), least, most))
+LARGEST_AISLE = 3.1  # what is larger is called a corridor [m2]
 
 
 class Apartment:
@@ -57,8 +46,9 @@ class Apartment:
         name = f"room_{len(self.rooms)}"
         size = Range()
         if room_type in AREAS:
-            _, _, least, most = AREAS[room_type]
-            size = Range(min=LOW * least, max=HIGH * most, target=area(self.rng, room_type))
+            mean, spread, least, most = AREAS[room_type]
+            target = float(np.clip(self.rng.normal(mean, spread), least, most))
+            size = Range(min=LOW * least, max=HIGH * most, target=target)
         self.rooms.append(RoomReq.model_validate({"id": name, "type": ROOMS[room_type]["plan"], "area": size}))
         self.types[name] = room_type
         if host:
@@ -94,7 +84,7 @@ def sample(rng: np.random.Generator, furnished: Sequence[str]) -> tuple[FloorPro
     living = home.room("LivingDiningRoom" if together else "LivingRoom")
     dines = "DiningRoom" in furnished or (not together and rng.random() < 0.25)
     dining = home.room("DiningRoom", living, "open") if dines else living
-    entry = {"Hallway", "Aisle", "Corridor"} & set(furnished) or rng.random() < 0.40
+    entry = set(CORRIDORS) & set(furnished) or rng.random() < 0.40
     hall = home.room("Hallway", living, "open") if entry else living
     baths = ["Bathroom"] + ["SecondBathroom"] * (len(private) >= 3 and rng.random() < 0.35)
     apart = len(private) + len(baths) > FEW or not together or rng.random() < 0.45
@@ -203,9 +193,8 @@ def _living(rng: np.random.Generator, drawn: list[tuple[str, ...]]) -> list[tupl
     share = float(rates.load()["living_dining"])  # type: ignore[arg-type]
     marks = (rng.permutation(len(alone)) + rng.random()) / max(1, len(alone))
     both = {k for k, mark in zip(alone, marks, strict=True) if mark < share}
-    return [
-        tuple(("LivingDiningRoom" if k in both else "LivingRoom") if t == "living" else t for t in rooms) for k, rooms in enumerate(drawn)
-    ]
+    names = ["LivingDiningRoom" if k in both else "LivingRoom" for k in range(len(drawn))]
+    return [tuple(name if t == "living" else t for t in rooms) for name, rooms in zip(names, drawn, strict=True)]
 
 
 def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:
@@ -216,16 +205,9 @@ def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:
             plan = solve(program, int(rng.integers(2**31)))
         except RefusedError:
             continue
-        return _as_front(plan, types, float(rng.uniform(1.45, 1.57)))
+        angle = float(rng.uniform(1.45, 1.57))  # of open leaves [rad]
+        openings = (o if o.swing is None else replace(o, swing=replace(o.swing, angle=angle)) for o in plan.openings)
+        aisles = {r.room_id for r in plan.rooms if types[r.room_id] == "Corridor" and r.area < LARGEST_AISLE}
+        rooms = (replace(r, type="Aisle" if r.room_id in aisles else types[r.room_id]) for r in plan.rooms)
+        return replace(plan, rooms=tuple(rooms), openings=tuple(openings))
     raise ContentError(f"no house plan after {PROGRAMS} programs", "choose another seed in params.yaml")
-
-
-def _as_front(plan: Plan, types: Mapping[str, str], angle: float) -> Plan:
-    """Return the plan with 3D-FRONT's types, its leaves open by `angle` [rad]."""
-    openings = (o if o.swing is None else replace(o, swing=replace(o.swing, angle=angle)) for o in plan.openings)
-    return replace(plan, rooms=tuple(replace(r, type=_front_type(r, types)) for r in plan.rooms), openings=tuple(openings))
-
-
-def _front_type(room: Room, types: Mapping[str, str]) -> str:
-    name = types[room.room_id]
-    return "Aisle" if name == "Corridor" and room.area < LARGEST_AISLE else name

@@ -17,19 +17,14 @@ from pipeline.corpus.houses.records import Item, Rect, wrap
 from pipeline.entities.plan import Opening, Room
 
 FAR = 50.0
-LOW = 1.0
-"""Boxes that start above this height do not stand in the way on the floor [m]."""
+LOW = 1.0  # boxes that start above this height do not stand in the way on the floor [m]
 EPSILON = 1e-4
-STEP = 0.5
-"""Free floor before an opening [m]; less before a wide one in a room narrower than NARROW, such as a balcony."""
+STEP = 0.5  # free floor before an opening [m]; less before a wide one in a room narrower than NARROW, such as a balcony
 NARROW = 1.7
-LEAF_TOP = 2.12
-"""Nothing hangs lower than this where a door leaf swings [m]."""
-LOW_PIECE = 0.65
-"""What is no higher than this may stand before any window [m]."""
+LEAF_TOP = 2.12  # nothing hangs lower than this where a door leaf swings [m]
+LOW_PIECE = 0.65  # what is no higher than this may stand before any window [m]
 CELL = 0.1
-WAY = 0.3
-"""Half the width that people leave for the ways through their rooms [m]."""
+WAY = 0.3  # half the width that people leave for the ways through their rooms [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,13 +78,11 @@ def box_of(x: float, y: float, yaw: float, width: float, depth: float) -> Rect:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """A place for a piece: centre [m, world], yaw, and where it came from along a side."""
+    """A place for a piece: centre [m, world] and yaw."""
 
     x: float
     y: float
     yaw: float
-    side: int = -1
-    s: float = 0.0
 
     def box(self, width: float, depth: float) -> Rect:
         """Return the bounds of a piece of that width and depth there."""
@@ -111,7 +104,7 @@ def ahead(spot: Spot, depth: float, reach: float, width: float) -> Rect:
 def shift_spot(spot: Spot, right: float, front: float, turn: float = 0.0) -> Spot:
     """Return the spot moved in its own frame (x to the right as its width runs, front forwards) and turned."""
     c, s = math.cos(spot.yaw), math.sin(spot.yaw)
-    return Spot(spot.x + c * right + s * front, spot.y + s * right - c * front, wrap(spot.yaw + turn), spot.side, spot.s)
+    return Spot(spot.x + c * right + s * front, spot.y + s * right - c * front, wrap(spot.yaw + turn))
 
 
 class Space:
@@ -124,8 +117,8 @@ class Space:
         self.bounds: Rect = (*(float(v) for v in room.polygon.min(axis=0)), *(float(v) for v in room.polygon.max(axis=0)))  # type: ignore[assignment]
         self.sides = sides_of(room)
         self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects([(side.x, side.y) for side in self.sides])]
-        self.keeps: list[Rect] = []
-        self.sweeps: list[Rect] = []
+        self.clearances: list[Rect] = []
+        self.swept: list[Rect] = []
         self.gaps: list[tuple[Rect, float]] = []
         self.panes: list[tuple[Rect, float]] = []
         self.doors: list[tuple[float, float]] = []
@@ -144,9 +137,9 @@ class Space:
         swings_here = opening.swing is not None and opening.swing.room_id == room_id
         narrow = min(self.bounds[2] - self.bounds[0], self.bounds[3] - self.bounds[1]) < NARROW
         step = 0.35 if narrow and opening.width > 1.0 else STEP
-        self.keeps.append(side.strip(low - 0.03, high + 0.03, 0.0, max((high - low) + 0.05, step) if swings_here else step))
+        self.clearances.append(side.strip(low - 0.03, high + 0.03, 0.0, max((high - low) + 0.05, step) if swings_here else step))
         if swings_here:
-            self.sweeps.append(self.keeps[-1])
+            self.swept.append(self.clearances[-1])
         self.doors.append(side.point((low + high) / 2, 0.36))
 
     def fits(self, box: Rect, low: float, high: float, under: Rect | None = None) -> bool:
@@ -156,9 +149,9 @@ class Space:
         """
         if any(meets(box, r) and low < z1 - EPSILON and z0 < high - EPSILON and r is not under for r, z0, z1 in self.solids):
             return False
-        if low < LOW and any(meets(box, r) for r in self.keeps):
+        if low < LOW and any(meets(box, r) for r in self.clearances):
             return False
-        if low < LEAF_TOP and any(meets(box, r) for r in self.sweeps):
+        if low < LEAF_TOP and any(meets(box, r) for r in self.swept):
             return False
         if any(low < top and meets(box, r) for r, top in self.gaps):  # nothing hangs in a doorway
             return False
@@ -176,7 +169,7 @@ class Space:
         blocked = [side.along(r) for r, z0, z1 in self.solids if low < z1 and z0 < high and meets(body, r)]
         if low < LOW:
             blocked += [side.along(r) for r, z0, _ in self.solids if z0 < LOW and meets(whole, r)]
-            blocked += [side.along(r) for r in self.keeps if meets(body, r)]
+            blocked += [side.along(r) for r in self.clearances if meets(body, r)]
         blocked += [side.along(r) for r, top in self.gaps if low < top and meets(body, r)]
         if not self.blind:
             blocked += [side.along(r) for r, sill in self.panes if high > sill + 0.05 and meets(body, r)]
@@ -189,19 +182,19 @@ class Space:
             stretches.append((at, side.length))
         return stretches
 
-    def add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = ()) -> Item:
+    def add(self, model: Model, spot: Spot, z: float = 0.0, *, clearances: Sequence[Rect] = ()) -> Item:
         """Put a piece down and keep the given rectangles free from now on."""
         item = Item(model, self.number, (spot.x, spot.y, z), wrap(spot.yaw))
         self.items.append(item)
         self.solids.append((item.rect(), z, z + model.size[2]))
-        self.keeps.extend(keep)
+        self.clearances.extend(clearances)
         return item
 
-    def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, keep: Sequence[Rect] = (), under: Rect | None = None) -> bool:
+    def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, clearances: Sequence[Rect] = (), under: Rect | None = None) -> bool:
         """Put a piece down if it fits there and its free rectangles are free; a chair may reach under its table."""
-        if not self.fits(spot.box(*model.size[:2]), z, z + model.size[2], under) or not all(self.clear(r) for r in keep):
+        if not self.fits(spot.box(*model.size[:2]), z, z + model.size[2], under) or not all(self.clear(r) for r in clearances):
             return False
-        self.add(model, spot, z, keep=keep)
+        self.add(model, spot, z, clearances=clearances)
         return True
 
     def take_back(self) -> None:
@@ -211,30 +204,21 @@ class Space:
 
     def nestle(self, model: Model, spot: Spot, *, dry: bool = False) -> bool:
         """Put down a piece that may stand where others want floor for themselves, but not before a door; `dry`: only try."""
-        wanted, self.keeps = self.keeps, self.keeps[: len(self.doors)]
+        wanted, self.clearances = self.clearances, self.clearances[: len(self.doors)]
         fits = self.fits(spot.box(*model.size[:2]), 0.0, model.size[2])
-        self.keeps = wanted
+        self.clearances = wanted
         if fits and not dry:
             self.add(model, spot)
         return fits
 
 
-def against(
-    rng: np.random.Generator,
-    space: Space,
-    model: Model,
-    *,
-    front: float,
-    corner: float = 0.5,
-    low: float = 0.0,
-    sides: Sequence[int] | None = None,
-) -> Spot | None:
+def against(rng: np.random.Generator, space: Space, model: Model, *, front: float, corner: float = 0.5, low: float = 0.0) -> Spot | None:
     """Return a place with the back to a wall, `front` metres free before it; with chance `corner` at a stretch's end."""
     w, d, h = model.size
     gap = back_gap(rng)
     candidates: list[tuple[int, float, float]] = []
-    for i in range(len(space.sides)) if sides is None else sides:
-        candidates += [(i, a, b) for a, b in space.spans(space.sides[i], d + gap, front, low, low + h) if b - a >= w + 0.02]
+    for i, side in enumerate(space.sides):
+        candidates += [(i, a, b) for a, b in space.spans(side, d + gap, front, low, low + h) if b - a >= w + 0.02]
     if not candidates:
         return None
     if corner >= 0.95:  # the room's own corners first
@@ -255,7 +239,7 @@ def against(
 def on_side(space: Space, side: int, s: float, depth: float, gap: float) -> Spot:
     """Return the spot of a piece of that depth, `s` along a wall, `gap` off it [m]."""
     x, y = space.sides[side].point(s, gap + depth / 2)
-    return Spot(x, y, space.sides[side].yaw, side, s)
+    return Spot(x, y, space.sides[side].yaw)
 
 
 def back_gap(rng: np.random.Generator) -> float:
@@ -268,12 +252,8 @@ def outside_rects(polygon: Sequence[tuple[float, float]]) -> list[Rect]:
     xs = sorted({x for x, _ in polygon})
     ys = sorted({y for _, y in polygon})
     x0, x1, y0, y1 = xs[0], xs[-1], ys[0], ys[-1]
-    around: list[Rect] = [
-        (x0 - FAR, y0 - FAR, x0, y1 + FAR),
-        (x1, y0 - FAR, x1 + FAR, y1 + FAR),
-        (x0 - FAR, y0 - FAR, x1 + FAR, y0),
-        (x0 - FAR, y1, x1 + FAR, y1 + FAR),
-    ]
+    left, right, bottom, top = x0 - FAR, x1 + FAR, y0 - FAR, y1 + FAR
+    around: list[Rect] = [(left, bottom, x0, top), (x1, bottom, right, top), (left, bottom, right, y0), (left, y1, right, top)]
     for a, b in itertools.pairwise(xs):
         inside = inside_intervals(polygon, (a + b) / 2)
         edges = [y0, *(v for span in inside for v in span), y1]

@@ -12,6 +12,7 @@ from pipeline.entities.plan import Opening, Plan, Room
 
 Point = tuple[float, float, float]
 Quad = tuple[Point, Point, Point, Point]
+Hole = tuple[float, float, float, float]  # from, to along a side, sill and top [m]
 INNER = 0.12
 OUTER = 0.24
 FRAME = 0.05
@@ -38,9 +39,9 @@ def surfaces(plan: Plan) -> tuple[Surface, ...]:
         bare = [_outer_parts(side, others) for side in sides[number]]
         for k, side in enumerate(sides[number]):
             holes = holes_on(side, plan, room)
-            shell.append(Surface("WallInner", number, tuple(_wall(side, 0.0, holes, room.height, inside=True))))
+            shell.append(Surface("WallInner", number, tuple(_wall(side, 0.0, (0.0, side.length), holes, room.height, inside=True))))
             spans = _outer_spans(k, sides[number], bare)
-            quads = [q for a, b in spans for q in _wall(side, -OUTER, holes, room.height, inside=False, low=a, high=b)]
+            quads = [q for span in spans for q in _wall(side, -OUTER, span, holes, room.height, inside=False)]
             if quads:
                 shell.append(Surface("WallOuter", number, tuple(quads)))
                 shell.append(Surface("WallTop", number, tuple(_level(side, a, b, room.height) for a, b in bare[k])))
@@ -49,8 +50,8 @@ def surfaces(plan: Plan) -> tuple[Surface, ...]:
     return tuple(shell)
 
 
-def holes_on(side: Side, plan: Plan, room: Room) -> list[tuple[float, float, float, float]]:
-    """Return (low, high, sill, top) of the openings of a room that lie in one of its sides [m]."""
+def holes_on(side: Side, plan: Plan, room: Room) -> list[Hole]:
+    """Return the openings of a room that lie in one of its sides."""
     holes = []
     for opening in plan.openings:
         if room.room_id not in opening.rooms:
@@ -73,19 +74,9 @@ def _flat(room: Room, z: float, *, up: bool) -> Iterator[Quad]:
             yield quad if up else (quad[3], quad[2], quad[1], quad[0])
 
 
-def _wall(
-    side: Side,
-    off: float,
-    holes: Sequence[tuple[float, float, float, float]],
-    height: float,
-    *,
-    inside: bool,
-    low: float = 0.0,
-    high: float | None = None,
-) -> Iterator[Quad]:
-    """Cover a wall from `low` to `high` along it, `off` in front of it, with upright rectangles around its holes."""
-    end = side.length if high is None else high
-    cuts = sorted({low, end, *(v for h in holes for v in h[:2] if low < v < end)})
+def _wall(side: Side, off: float, span: tuple[float, float], holes: Sequence[Hole], height: float, *, inside: bool) -> Iterator[Quad]:
+    """Cover a wall over a `span` along it, `off` in front of it, with upright rectangles around its holes."""
+    cuts = sorted({*span, *(v for h in holes for v in h[:2] if span[0] < v < span[1])})
     for a, b in itertools.pairwise(cuts):
         at = (a + b) / 2
         hole = next((h for h in holes if h[0] < at < h[1]), None)

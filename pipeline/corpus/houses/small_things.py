@@ -19,13 +19,10 @@ from pipeline.corpus.houses.room_occupancy import against, box_of, meets, proble
 from pipeline.corpus.houses.stock import Surfaces
 from pipeline.entities.plan import Opening
 
-MARGIN = 0.01
-"""Least distance of a thing from the edge it lies at, and from another thing [m]."""
+MARGIN = 0.01  # least distance of a thing from the edge it lies at, and from another thing [m]
 TRIES = 6
-LOWEST, HIGHEST = 0.03, 1.75
-"""Surfaces within these heights above the support's foot are used [m]."""
-HUNG_AT = 1.35
-"""Underside of pictures and mirrors [m]."""
+LOWEST, HIGHEST = 0.03, 1.75  # surfaces within these heights above the support's foot are used [m]
+HUNG_AT = 1.35  # underside of pictures and mirrors [m]
 
 
 def add_small_things(arranger: Arranger, openings: Sequence[Opening], kind: str) -> None:
@@ -68,7 +65,7 @@ def load(arranger: Arranger, index: int, wanted: Mapping[str, float]) -> None:
                 break
             place = _place(rng, model, support, surfaces, taken, others)
             if place is not None:
-                space.items.append(dataclasses.replace(place, room=space.number, support=index))
+                space.items.append(dataclasses.replace(place, support=index))
 
 
 def _place(
@@ -98,19 +95,15 @@ def _place(
             continue
         if any((a - MARGIN < high).all() and (b + MARGIN > low).all() for a, b in taken):
             continue
-        item = _in_world(model, support, x, y, float(top[4]), turn)
+        px, py, pz = support.position
+        c, s = math.cos(support.yaw), math.sin(support.yaw)
+        item = Item(model, support.room, (px + c * x - s * y, py + s * x + c * y, pz + float(top[4])), wrap(support.yaw + turn))
         box, z = item.rect(), item.position[2]
         if any(z < t and b < z + h and meets(box, r) for r, b, t in others):
             continue
         taken.append((low, high))
         return item
     return None
-
-
-def _in_world(model: Model, support: Item, x: float, y: float, z: float, turn: float) -> Item:
-    c, s = math.cos(support.yaw), math.sin(support.yaw)
-    px, py, pz = support.position
-    return Item(model, support.room, (px + c * x - s * y, py + s * x + c * y, pz + z), wrap(support.yaw + turn))
 
 
 def lay_rug(arranger: Arranger, share: float) -> None:
@@ -122,8 +115,8 @@ def lay_rug(arranger: Arranger, share: float) -> None:
     rugs = [m for m in rugs if rng.random() < 0.6]  # not always the largest that fits
     tables = [k for k, i in enumerate(space.items) if i.model.category == "coffee_table"]
     floor = [(k, i.rect()) for k, i in enumerate(space.items) if i.position[2] < 0.05]
-    doors = space.keeps[: len(space.doors)]
-    places = [space.items[k].position[:2] for k in tables] + [(x, y) for x, y in arranger.middles()]
+    doors = space.clearances[: len(space.doors)]
+    places = [space.items[k].position[:2] for k in tables] + arranger.middles()
     yaw = space.items[tables[0]].yaw if tables else float(rng.choice([0.0, math.pi / 2]))
     for rug in rugs:
         for x, y in places:
@@ -132,7 +125,7 @@ def lay_rug(arranger: Arranger, share: float) -> None:
                 on = [k for k, r in floor if meets(box, r)]
                 if any(k not in tables or not _within(space.items[k].rect(), box) for k in on) or any(meets(box, r) for r in doors):
                     continue
-                if any(low < 0.02 and meets(box, r) for r, low, _ in space.solids if low < -1.0):
+                if any(meets(box, r) for r, low, _ in space.solids if low < -1.0):  # a wall
                     continue
                 index = len(space.items)
                 space.items.append(Item(rug, space.number, (x, y, 0.0), turn))
@@ -166,7 +159,7 @@ def hang_curtains(arranger: Arranger, share: float, openings: Sequence[Opening])
         x, y = side.point((low + high) / 2, d / 2 + 0.004)
         box = box_of(x, y, side.yaw, width, d)
         blocked = any(meets(box, r) and z0 < top and bottom < z1 for r, z0, z1 in space.solids)
-        if not blocked and not any(meets(box, r) for r in space.sweeps):
+        if not blocked and not any(meets(box, r) for r in space.swept):
             space.items.append(Item(model, space.number, (x, y, bottom), side.yaw, scale))
             space.solids.append((box, bottom, top))
 
@@ -180,5 +173,4 @@ def _on_floor(arranger: Arranger, category: str) -> None:
     spot = against(arranger.rng, space, model, front=0.0, corner=0.8)
     cut_off = problems(space)[0]
     if spot is not None and space.try_add(model, spot) and problems(space)[0] > cut_off:
-        space.items.pop()
-        space.solids.pop()
+        space.take_back()

@@ -12,14 +12,10 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import Model
 
-LEVEL = 1e-4
-"""Vertices within this height of the highest lie on the top [m]."""
-LEAST = 0.07
-"""Narrowest top that anything lies on [m]."""
-SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)
-"""What share of a top's bounds is tried: all of a board, two thirds of a disc."""
-STYLE_WEIGHT = 3.0
-"""How much likelier a model in the house's own style is taken than another."""
+LEVEL = 1e-4  # vertices within this height of the highest lie on the top [m]
+LEAST = 0.07  # narrowest top that anything lies on [m]
+SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)  # what share of a top's bounds is tried: all of a board, two thirds of a disc
+STYLE_WEIGHT = 3.0  # how much likelier a model in the house's own style is taken than another
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,21 +69,10 @@ class Stock:
             self.by_category[model.category].append(model)
         self.styles = tuple(sorted({m.style for m in models if m.style}))
 
-    def pick(
-        self,
-        rng: np.random.Generator,
-        category: str,
-        style: str,
-        *,
-        width: float = math.inf,
-        depth: float = math.inf,
-        height: float = math.inf,
-        narrowest: float = 0.0,
-    ) -> Model | None:
-        """Draw a model of a category no larger than the limits [m]; None if there is none."""
-        fitting = [
-            m for m in self.by_category.get(category, ()) if narrowest <= m.size[0] <= width and m.size[1] <= depth and m.size[2] <= height
-        ]
+    def pick(self, rng: np.random.Generator, category: str, style: str, most: Sequence[float], narrowest: float = 0.0) -> Model | None:
+        """Draw a model of a category no larger than `most` (w, d, h) and no narrower than that [m]; None if there is none."""
+        models = self.by_category.get(category, ())
+        fitting = [m for m in models if m.size[0] >= narrowest and all(a <= b for a, b in zip(m.size, most, strict=True))]
         if not fitting:
             return None
         weights = [STYLE_WEIGHT if m.style == style else 1.0 for m in fitting]

@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from sweep import collisions, transform
 
 from pipeline.corpus.furniture.assembly import shape_of
-from pipeline.corpus.furniture.catalogue import catalogue, lines
+from pipeline.corpus.furniture.catalogue import catalogue, corpus_cards
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, door
 from pipeline.corpus.furniture.shape import Shape, colliders, pieces
@@ -121,7 +121,7 @@ def test_part_classes():
 
 
 def test_every_form_is_sampled():
-    want = {(c, name) for c, line in lines().items() if line.moving for name, form in line.forms.items() if not form.still}
+    want = {(c, name) for c, card in corpus_cards().items() if card.moving for name, form in card.forms.items() if not form.still}
     missing = want - {(m.category, m.form) for m, _ in samples()}
     assert not missing
 

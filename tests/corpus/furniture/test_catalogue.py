@@ -6,7 +6,7 @@ import pytest
 
 from pipeline import taxonomy
 from pipeline.card import cards
-from pipeline.corpus.furniture.catalogue import LEAST, MOST, catalogue, draw_sizes, lines
+from pipeline.corpus.furniture.catalogue import LEAST, MOST, catalogue, corpus_cards, draw_sizes
 from pipeline.seeds import generator
 
 UNSEEN = {"suitcase", "briefcase", "bucket", "safe", "drawer_organiser"}  # read where real data have them; no home holds one
@@ -14,7 +14,7 @@ UNSEEN = {"suitcase", "briefcase", "bucket", "safe", "drawer_organiser"}  # read
 
 def test_every_category_of_the_taxonomy_has_static_models_but_what_no_home_holds():
     made = catalogue(0)
-    assert {m.category for m in made.future} == set(lines()) == set(taxonomy.load().categories) - UNSEEN
+    assert {m.category for m in made.future} == set(corpus_cards()) == set(taxonomy.load().categories) - UNSEEN
     assert set(cards()) == set(taxonomy.load().categories)
 
 
@@ -29,7 +29,7 @@ def test_size_scales_the_number_of_models():
     small, big = catalogue(0, 0.25), catalogue(0, 2.0)
     assert len(small.future) == pytest.approx(0.25 * len(catalogue(0).future), rel=0.35)
     assert len(big.partnet) == 2 * len(catalogue(0).partnet)
-    assert {m.category for m in small.future} == set(lines())
+    assert {m.category for m in small.future} == set(corpus_cards())
 
 
 def test_ids_are_unique_and_of_the_sources_kind():
@@ -52,12 +52,12 @@ def test_names_are_those_that_the_taxonomy_reads():
 def test_sizes_lie_between_the_bounds():
     for model in (*catalogue(0).future, *catalogue(1).partnet):
         size = cards()[model.category].size
-        form = lines()[model.category].forms[model.form]
+        form = corpus_cards()[model.category].forms[model.form]
         for axis in (0, 2) if form.round else (0, 1) if form.upright else (0, 1, 2):
             assert LEAST * size.p05[axis] - 1e-3 <= model.size[axis] <= MOST * size.p95[axis] + 1e-3
 
 
-@pytest.mark.parametrize("category", sorted(lines()))
+@pytest.mark.parametrize("category", sorted(corpus_cards()))
 @pytest.mark.parametrize("count", [8, 40])
 def test_draws_keep_mean_and_spread_whatever_their_number(category, count):
     size = cards()[category].size
@@ -95,5 +95,5 @@ def test_same_seed_same_models_other_seed_other_models():
 def test_forms_come_equally_often():
     for category, count in Counter(m.category for m in catalogue(0).future).items():
         forms = Counter(m.form for m in catalogue(0).future if m.category == category)
-        if all(f.least_height == 0 for f in lines()[category].forms.values()):
-            assert max(forms.values()) - min(forms.values()) <= 1 or count < len(lines()[category].forms)
+        if all(f.least_height == 0 for f in corpus_cards()[category].forms.values()):
+            assert max(forms.values()) - min(forms.values()) <= 1 or count < len(corpus_cards()[category].forms)

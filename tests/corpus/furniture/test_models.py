@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from pipeline.corpus.furniture.assembly import shape_of
-from pipeline.corpus.furniture.catalogue import catalogue, lines
+from pipeline.corpus.furniture.catalogue import catalogue, corpus_cards
 
 
 def models():
@@ -58,7 +58,7 @@ def test_carcasses_are_hollow():
 
 
 def test_every_form_is_built():
-    assert {(m.category, m.form) for m in models()} == {(c, name) for c, line in lines().items() for name in line.forms}
+    assert {(m.category, m.form) for m in models()} == {(c, name) for c, card in corpus_cards().items() for name in card.forms}
 
 
 def test_static_models_do_not_move():

@@ -16,8 +16,8 @@ MADE = {
     "vase": solids.revolve([(0.2, 0), (0.3, 0.1), (0.1, 0.3), (0.1, 0.5), (0.25, 0.6)]),
     "ring": solids.ring((0.5, 0.4), (0.45, 0.35), (0, 0.3), squash=0.7),
     "hull": [solids.hull(np.random.default_rng(3).normal(size=(20, 3)))],
-    "mirrored": [solids.beam((0, 0, 0), (0.2, 0.1, 1), 0.05, 0.04).mirrored()],
-    "turned": [solids.box(*UNIT, 0.02).turned("y", 0.7, (1, 2, 3))],
+    "mirrored": [solids.beam((0, 0, 0), (0.2, 0.1, 1), 0.05, 0.04).mirror()],
+    "turned": [solids.box(*UNIT, 0.02).rotate("y", 0.7, (1, 2, 3))],
 }
 
 
@@ -65,5 +65,5 @@ def test_volumes():
 
 def test_turning_keeps_volume_and_distance():
     solid = MADE["bevelled"][0]
-    assert volume(solid.turned("x", 1.1)) == pytest.approx(volume(solid))
-    assert np.allclose(solid.turned("z", np.pi / 2).vertices[:, 0], -solid.vertices[:, 1])
+    assert volume(solid.rotate("x", 1.1)) == pytest.approx(volume(solid))
+    assert np.allclose(solid.rotate("z", np.pi / 2).vertices[:, 0], -solid.vertices[:, 1])

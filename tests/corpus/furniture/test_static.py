@@ -8,51 +8,19 @@ import numpy as np
 import pytest
 
 from pipeline.corpus.furniture import bent, texture
-from pipeline.corpus.furniture.assembly import scheme_of, shape_of
-from pipeline.corpus.furniture.catalogue import catalogue, lines, styles_of
-from pipeline.corpus.furniture.finishes import MANNERS, Finish
-from pipeline.corpus.furniture.shape import frozen, pieces
+from pipeline.corpus.furniture.assembly import finishes_of, shape_of
+from pipeline.corpus.furniture.catalogue import catalogue, corpus_cards, styles_of
+from pipeline.corpus.furniture.finishes import STYLES, Finish
+from pipeline.corpus.furniture.shape import freeze, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, merge_solids, normals, pillow, topology
 from pipeline.corpus.furniture.wavefront import sides_of
 from pipeline.seeds import generator
 
 SMALL = {
-    "rug",
-    "curtain",
-    "pillow",
-    "table_lamp",
-    "cup",
-    "plate",
-    "bowl",
-    "vase",
-    "book",
-    "book_stack",
-    "basket",
-    "picture",
-    "mirror",
-    "clock",
-    "television",
-    "bath_mat",
-    "blind",
-    "towel",
-    "folded_towels",
-    "throw",
-    "paper_holder",
-    "coat_hooks",
-    "photo_frame",
-    "candle",
-    "tray",
-    "potted_herb",
-    "bottle",
-    "canister",
-    "kettle",
-    "cutting_board",
-    "fruit_bowl",
-    "toy",
-    "pen_cup",
-    "alarm_clock",
-    "tissue_box",
-}
+    "rug", "curtain", "pillow", "table_lamp", "cup", "plate", "bowl", "vase", "book", "book_stack", "basket", "picture", "mirror",
+    "clock", "television", "bath_mat", "blind", "towel", "folded_towels", "throw", "paper_holder", "coat_hooks", "photo_frame", "candle",
+    "tray", "potted_herb", "bottle", "canister", "kettle", "cutting_board", "fruit_bowl", "toy", "pen_cup", "alarm_clock", "tissue_box",
+}  # fmt: skip
 WOODEN = 0.035  # how deep one hard piece may sit in another: a tenon, a screwed joint [m]
 SOFT = 0.06  # the same where one of them is upholstery, which gives [m]
 FOAM = 200.0  # density below which a piece is soft [kg/m3]
@@ -99,7 +67,7 @@ def chosen():
     return tuple(made)
 
 
-HERE = {c for c, line in lines().items() if not line.moving}
+HERE = {c for c, card in corpus_cards().items() if not card.moving}
 
 
 def test_there_are_enough_models_of_every_category():
@@ -112,13 +80,13 @@ def test_there_are_enough_models_of_every_category():
 
 
 def test_forms_and_styles_suit_each_other():
-    assert {s for line in lines().values() for form in line.forms.values() for s in styles_of(form)} == set(MANNERS)
+    assert {s for card in corpus_cards().values() for form in card.forms.values() for s in styles_of(form)} == set(STYLES)
     for model in catalogue(1).future:
-        forms = lines()[model.category].forms
+        forms = corpus_cards()[model.category].forms
         assert model.style in styles_of(forms[model.form]) or model.form == next(iter(forms))
-    assert {m.style for m in catalogue(0).future} == set(MANNERS)
-    assert len(MANNERS) == 19
-    assert sum(m.share for m in MANNERS.values()) == pytest.approx(1)
+    assert {m.style for m in catalogue(0).future} == set(STYLES)
+    assert len(STYLES) == 19
+    assert sum(m.share for m in STYLES.values()) == pytest.approx(1)
 
 
 def test_styles_differ_in_what_they_are_made_of():
@@ -126,8 +94,8 @@ def test_styles_differ_in_what_they_are_made_of():
     seen: dict[str, set[str]] = {}
     for seed in (0, 1):
         for model in catalogue(seed).future:
-            scheme = scheme_of(model)
-            seen.setdefault(model.style, set()).update(f.name for f in (scheme.body, scheme.soft, scheme.handle, scheme.timber))
+            finishes = finishes_of(model)
+            seen.setdefault(model.style, set()).update(f.name for f in (finishes.body, finishes.soft, finishes.handle, finishes.timber))
     for a, b in (
         ("Nordic", "Industrial"),
         ("Japanese", "European Classic"),
@@ -152,7 +120,7 @@ def test_triangles_of_static_models():
 
 def test_no_piece_is_deep_in_another():
     for model in chosen():
-        parts = list(frozen(shape_of(model)).pieces())
+        parts = list(freeze(shape_of(model)).pieces())
         solids = [p.solid for p in parts]
         low = np.array([s.vertices.min(axis=0) for s in solids]) + WOODEN
         high = np.array([s.vertices.max(axis=0) for s in solids]) - WOODEN
