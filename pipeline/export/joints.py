@@ -11,7 +11,6 @@ from pipeline.errors import ContentError
 from pipeline.export.model import Floats, Joint, inverse
 from pipeline.export.pieces import world
 
-AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 DEGREE = math.degrees(1.0)
 
 
@@ -63,11 +62,8 @@ def _joint(prim: Usd.Prim, parent: int, child: int, T_parent: Floats, T_child: F
     else:
         raise ContentError(f"{prim.GetPath()} is a {prim.GetTypeName()}", "only hinges, slides and welds can be exported")
     driven = UsdPhysics.DriveAPI.Get(prim, drive)
-    damping, stiffness, rest = (
-        (driven.GetDampingAttr().Get(), driven.GetStiffnessAttr().Get(), driven.GetTargetPositionAttr().Get())
-        if driven
-        else (0.0, 0.0, 0.0)
-    )
+    attributes = (driven.GetDampingAttr(), driven.GetStiffnessAttr(), driven.GetTargetPositionAttr()) if driven else ()
+    damping, stiffness, rest = [attribute.Get() for attribute in attributes] or (0.0, 0.0, 0.0)
     stops = [prim.GetAttribute(f"mjc:{name}").Get() for name in ("solreflimit", "solimplimit")]
     after = prim.GetRelationship("sfgen:after")
     return Joint(
@@ -77,7 +73,7 @@ def _joint(prim: Usd.Prim, parent: int, child: int, T_parent: Floats, T_child: F
         child,
         T_parent,
         T_child,
-        np.array(AXES[typed.GetAxisAttr().Get()]),
+        np.eye(3)["XYZ".index(typed.GetAxisAttr().Get())],
         typed.GetLowerLimitAttr().Get() / unit,
         typed.GetUpperLimitAttr().Get() / unit,
         damping * unit,
@@ -91,5 +87,4 @@ def _joint(prim: Usd.Prim, parent: int, child: int, T_parent: Floats, T_child: F
 
 
 def _number(prim: Usd.Prim, name: str) -> float:
-    value = prim.GetAttribute(name).Get() if prim.HasAttribute(name) else None
-    return 0.0 if value is None else float(value)
+    return float(prim.GetAttribute(name).Get() or 0.0) if prim.HasAttribute(name) else 0.0

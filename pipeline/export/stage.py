@@ -28,13 +28,10 @@ def read_home(path: Path, scene_id: str, asset: Callable[[Path], Model]) -> Scen
     placed = []
     for prim, kind in _things(stage.GetDefaultPrim()):
         source = _reference(prim)
-        if source:
-            model, matrix = asset(source), world(cache, prim)
-        else:
-            name = f"{kind}_{prim.GetName()}" if kind in {"room", "wall"} else prim.GetName()
-            model, matrix = read_model(prim, name, shared=False), world(cache, prim)
+        name = f"{kind}_{prim.GetName()}" if kind in {"room", "wall"} else prim.GetName()
+        model = asset(source) if source else read_model(prim, name, shared=False)
         models[model.name] = model
-        rigid, scale = _split(matrix, prim)
+        rigid, scale = _split(world(cache, prim), prim)
         if not model.still and np.abs(scale - 1).max() > 1e-6:
             raise ContentError(f"{path}: {prim.GetPath()} moves and is scaled", REMEDY)
         support = prim.GetRelationship("sfgen:support")
@@ -67,7 +64,8 @@ def read_model(root: Usd.Prim, name: str, *, shared: bool) -> Model:
     joints, grounded = read_joints(root, index, cache)
     grounded |= {i for i, body in enumerate(bodies) if body.inertia is None}
     _require_tree(len(bodies), [(j.parent, j.child) for j in joints], root)
-    pairs = {tuple(sorted((index[p.GetPath()], index[t]))) for p in prims for t in _filtered_pairs(p) if t in index}
+    filtered = [(p, UsdPhysics.FilteredPairsAPI(p).GetFilteredPairsRel()) for p in prims if p.HasAPI(UsdPhysics.FilteredPairsAPI)]
+    pairs = {tuple(sorted((index[p.GetPath()], index[t]))) for p, others in filtered for t in others.GetTargets() if t in index}
     return Model(name, shared, tuple(bodies), tuple(joints), frozenset(grounded), tuple(sorted(pairs)))  # type: ignore[arg-type]
 
 
@@ -115,10 +113,6 @@ def _inertia(prim: Usd.Prim) -> Inertia | None:
     length = np.linalg.norm(quaternion)  # the schema's own value, "compute them", is 0
     quaternion = quaternion / length if length > 0 else np.array([1.0, 0, 0, 0])
     return Inertia(float(mass), np.array(api.GetCenterOfMassAttr().Get(), np.float64), np.array(moments, np.float64), quaternion)
-
-
-def _filtered_pairs(prim: Usd.Prim) -> list[Sdf.Path]:
-    return list(UsdPhysics.FilteredPairsAPI(prim).GetFilteredPairsRel().GetTargets()) if prim.HasAPI(UsdPhysics.FilteredPairsAPI) else []
 
 
 def _require_tree(count: int, edges: list[tuple[int, int]], root: Usd.Prim) -> None:

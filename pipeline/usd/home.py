@@ -52,7 +52,8 @@ def home_layer(home: Home, assets: Mapping[str, Asset], library: str = "../../as
     groups["Objects"] += [placement_text("/World/Objects", p, assets, library, spared.get(p.object_id, ())) for p in home.placements]
     parts = [cast(group("group"), f"/World/{name}", "".join(texts)) for name, texts in groups.items()]
     world = cast(group("assembly"), "/World", "".join([materials.text(), *parts]))
-    return read_layer(world + cast(_scene(), "/PhysicsScene"), "World", suffix, _about(home))
+    about = {"scene_id": home.scene_id, "prompt": home.prompt, "generator": "sfgen"}
+    return read_layer(world + cast(_scene(), "/PhysicsScene"), "World", suffix, about)
 
 
 @functools.cache
@@ -90,7 +91,3 @@ def _without(paths: Sequence[str]) -> str:
     for link, name in (path.split("/") for path in paths):
         by_link.setdefault(link, []).append(f'over "{name}" (\nactive = false\n)\n{{\n}}\n')
     return "".join(f'over "{link}"\n{{\n{"".join(overs)}}}\n' for link, overs in by_link.items())
-
-
-def _about(home: Home) -> dict[str, object]:
-    return {"scene_id": home.scene_id, "prompt": home.prompt, "generator": "sfgen"}

@@ -37,22 +37,22 @@ def room_text(parent: str, plan: Plan, room: Room, shells: Mapping[int, Shell], 
     parts = [transform_ops((0.0, 0.0, room.level * plan.storey_height))]
     for name, bottom, material in (("floor", -SLAB, palette.floor(room.type)), ("ceiling", under, palette.CEILING)):
         slabs = (_slab(f"{path}/{name}/piece_{i}", piece, (bottom, bottom + SLAB), material, materials) for i, piece in enumerate(pieces))
-        parts.append(cast(_scope(name), f"{path}/{name}", "".join(slabs)))
+        parts.append(cast(_labelled(name), f"{path}/{name}", "".join(slabs)))
     panels: list[Panel] = []
     for k, level in enumerate(storeys):
         faces = room_panels(room, shells[level].cuts, plan.storey_height if level < storeys[-1] else room.height)
         panels.extend(Panel(face.owner, face.corners + np.array([0.0, 0.0, k * plan.storey_height])) for face in faces)
     if panels:
         parts.append(_panels(f"{path}/wall", panels, palette.wall(room.type), materials))
-    return cast(_room(room.type), path, "".join(parts))
+    return cast(_labelled("room", room_type=room.type), path, "".join(parts))
 
 
 def walls_text(parent: str, plan: Plan, level: int, shell: Shell, solids: Iterable[Prism], materials: Palette) -> str:
     """Return a storey's `solids` (colliders, one box or convex piece each), facade, jambs, thresholds and steps."""
     path = f"{parent}/level_{level}"
     plaster = materials.path(palette.PLASTER)
-    made = [_solid(f"{path}/solids/{solid.kind}_{i:03d}", solid, plaster) for i, solid in enumerate(solids)]
-    parts = [transform_ops((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(made))]
+    masses = [_solid(f"{path}/solids/{solid.kind}_{i:03d}", solid, plaster) for i, solid in enumerate(solids)]
+    parts = [transform_ops((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(masses))]
     parts.append(_panels(f"{path}/facade", outer_panels(shell), palette.FACADE, materials))
     faces = [panel for cut in shell.cuts for panel in reveals(cut)]
     if faces:
@@ -66,8 +66,8 @@ def walls_text(parent: str, plan: Plan, level: int, shell: Shell, solids: Iterab
             _slab(f"{path}/stairs/{step.kind}_{i:02d}", step.polygon, (step.bottom, step.top), palette.STEP, materials, collides=True)
             for i, step in enumerate(shell.stairs)
         )
-        parts.append(cast(_scope("stairs", "Scope"), f"{path}/stairs", "".join(steps)))
-    return cast(_scope("wall"), path, "".join(parts))
+        parts.append(cast(_labelled("stairs", "Scope"), f"{path}/stairs", "".join(steps)))
+    return cast(_labelled("wall"), path, "".join(parts))
 
 
 def door_texts(parent: str, elevation: float, shell: Shell, materials: Palette) -> list[str]:
@@ -87,10 +87,9 @@ def window_texts(parent: str, elevation: float, shell: Shell, materials: Palette
     texts = []
     for cut in shell.cuts:
         if cut.opening.kind == "window":
-            a, b = (cut.quad[0] + cut.quad[3]) / 2, (cut.quad[1] + cut.quad[2]) / 2
-            fitting = _window(fittings.window_size(cut))
+            fitting, (start, yaw) = _window(fittings.window_size(cut)), fittings.window_pose(cut)
             materials.paths(fitting.materials)
-            where = transform_ops((*a, elevation), float(np.arctan2(*(b - a)[::-1])))
+            where = transform_ops((*start, elevation), yaw)
             texts.append(cast(fitting.form, f"{parent}/{cut.opening.opening_id}", where))
     return texts
 
@@ -148,16 +147,14 @@ def _prism_shape(polygon: NDArray[np.float64], bottom: float, top: float) -> str
 
 
 @functools.cache
-def _scope(name: str, kind: str = "Xform") -> str:
-    return mould(lambda layer: label(prim(layer, "Mould", kind), "class", [name]))
+def _labelled(name: str, schema: str = "Xform", room_type: str = "") -> str:
+    """Return the mould of a prim that holds others, labelled as a `name` and, where it is a room, with its type."""
 
-
-@functools.cache
-def _room(kind: str) -> str:
     def convert(layer: Sdf.Layer) -> None:
-        spec = prim(layer, "Mould")
-        label(spec, "class", ["room"])
-        label(spec, "room_type", [kind])
+        spec = prim(layer, "Mould", schema)
+        label(spec, "class", [name])
+        if room_type:
+            label(spec, "room_type", [room_type])
 
     return mould(convert)
 
@@ -169,30 +166,21 @@ def _solid(path: str, solid: Prism, material: str) -> str:
     if len(p) == 4 and float(np.abs(p[0] + p[2] - p[1] - p[3]).max()) < EXACT and abs((p[1] - p[0]) @ (p[3] - p[0])) < EXACT:
         size = (*(float(np.linalg.norm(p[k] - p[0])) for k in (1, 3)), high - low)
         yaw = float(np.arctan2(*(p[1] - p[0])[::-1]))
-        return cast(_block_form(material), path, transform_ops((*p.mean(axis=0), (low + high) / 2), yaw, size))
-    return cast(_prism_form(len(p), material), path, _prism_shape(p, low, high))
+        return cast(_solid_form(0, material), path, transform_ops((*p.mean(axis=0), (low + high) / 2), yaw, size))
+    return cast(_solid_form(len(p), material), path, _prism_shape(p, low, high))
 
 
 @functools.lru_cache(maxsize=256)
-def _block_form(material: str) -> str:
+def _solid_form(corners: int, material: str) -> str:
+    """Return the mould of a solid over a polygon of so many corners, of a cube for 0."""
+
     def convert(layer: Sdf.Layer) -> None:
-        gprim = convert_box(layer, "Mould", np.zeros(3), np.ones(3))
+        gprim = convert_mesh(layer, "Mould", _prism(corners), None) if corners else convert_box(layer, "Mould", np.zeros(3), np.ones(3))
         hide(gprim)
         convert_collider(gprim)
         bind(gprim, material)
 
-    return mould(convert, PLACE)
-
-
-@functools.lru_cache(maxsize=256)
-def _prism_form(corners: int, material: str) -> str:
-    def convert(layer: Sdf.Layer) -> None:
-        gprim = convert_mesh(layer, "Mould", _prism(corners), None)
-        hide(gprim)
-        convert_collider(gprim)
-        bind(gprim, material)
-
-    return mould(convert, SHAPE)
+    return mould(convert, SHAPE if corners else PLACE)
 
 
 def _slab(
