@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from pipeline import taxonomy
 from pipeline.entities.asset import Material
+from pipeline.entities.home import Placement
 from pipeline.entities.plan import Plan
 from pipeline.geometry.stairs import visible_steps
 from pipeline.geometry.walls import Shell, floor_pieces
@@ -44,16 +46,20 @@ def building(plan: Plan, level: int, shell: Shell) -> Soup:
         odd = (parts + len(quads)) % 2
         quads.append((step.polygon, scale_colour(pale(palette.STEP), float(grey) + STEP_GRAIN * odd), min(step.top, WALL_TOP - 0.1)))
     for cut in shell.cuts:
-        if cut.bottom > 0.05 or cut.opening.kind == "window":
-            quads.append((cut.quad, WINDOW, WALL_TOP))
-        else:
-            quads.append((cut.quad, pale(palette.threshold(plan, cut.opening)), 0.0))
+        walled = cut.bottom > 0.05 or cut.opening.kind == "window"
+        quads.append((cut.quad, WINDOW, WALL_TOP) if walled else (cut.quad, pale(palette.threshold(plan, cut.opening)), 0.0))
     quads.extend((prism.polygon, WALL, WALL_TOP) for prism in shell.prisms if prism.kind == "wall")
     for ring, colour, z in quads:
         faces = fans(ring[None], z)
         paved.append((faces, np.tile(np.array(colour, np.float32), (len(faces), 1))))
     faces, colours = (np.concatenate(column) for column in zip(*paved, strict=True))
     return Soup(faces, colours, np.zeros(len(faces), np.int32))
+
+
+def is_hanging(placement: Placement) -> bool:
+    """Whether a thing hangs under the ceiling, which views from above leave off."""
+    known = taxonomy.load().categories.get(placement.category)
+    return known is not None and known.mount == "ceiling"
 
 
 def _floor_triangles(piece: NDArray[np.float64], material: Material) -> tuple[NDArray[np.float64], NDArray[np.float32]]:

@@ -11,11 +11,10 @@ from pipeline.entities.asset import Asset, Material
 from pipeline.entities.home import Home
 from pipeline.geometry.stairs import Step, visible_steps
 from pipeline.geometry.walls import Panel, Shell, floor_pieces, outer_panels, reveals, room_panels, shell
-from pipeline.preview.building import pattern, scale_colour
+from pipeline.preview.building import fans, is_hanging, pattern, scale_colour
 from pipeline.rendering import fittings, palette
 from pipeline.rendering.pose import asset_triangles, open_joint_values, placement_transform
-from pipeline.rendering.texture import face_colours
-from pipeline.taxonomy import load
+from pipeline.rendering.surface_colour import face_colours
 
 CUT = 2.15  # walls are cut here; doors stay whole [m]
 LOW_CUT = 0.9  # outer walls between the eye and the rooms are cut here, so that one sees in [m]
@@ -62,12 +61,10 @@ def home_batches(
         if cut.opening.kind == "window" and cut_height(cut.quad) == CUT:
             asset, (x, y), yaw = fittings.window(cut)
             _add(heaps, asset, placement_transform(np.array([x, y, 0.0]), yaw), 0.0)
-    categories = load().categories
     rooms = {room.room_id for room in home.plan.rooms if room.level == level}
     lift = np.array([0.0, 0.0, level * home.plan.storey_height])
     for placement in home.placements:
-        hanging = placement.category in categories and categories[placement.category].mount == "ceiling"
-        if placement.room_id in rooms and placement.asset_id in assets and not hanging:
+        if placement.room_id in rooms and placement.asset_id in assets and not is_hanging(placement):
             T = placement_transform(placement.position - lift, placement.yaw, placement.scale)
             _add(heaps, assets[placement.asset_id], T, open_fraction)
     return [Batch(*finish, *(np.concatenate(column) for column in zip(*parts, strict=True))) for finish, parts in heaps.items()]
@@ -86,10 +83,10 @@ def _building(home: Home, level: int, built: Shell, heaps: Heaps, cut_height: Cu
     for step in visible_steps(home.plan, level):
         if step.bottom < CUT:
             _paint(heaps, palette.STEP, _solid(step, min(step.top, CUT)))
-    heights = [(p, cut_height(p.polygon)) for p in built.prisms]
-    tops = [_flat(p.polygon, height) for p, height in heights if p.bottom < height <= p.top]  # whole sills show their board instead
-    for top in tops:
-        _paint(heaps, WALL_TOP, top)
+    for prism in built.prisms:
+        height = cut_height(prism.polygon)
+        if prism.bottom < height <= prism.top:  # whole sills show their board instead
+            _paint(heaps, WALL_TOP, _flat(prism.polygon, height))
     _panels(heaps, palette.FACADE, [p for p in outer_panels(built) if np.ptp(p.corners[:, 2]) > 1e-6], cut_height)
     for cut in built.cuts:
         _panels(heaps, palette.JAMB, reveals(cut), cut_height)
@@ -104,11 +101,11 @@ def _panels(heaps: Heaps, material: Material, panels: list[Panel], cut_height: C
         if panel.corners[:, 2].min() < height:
             corners = panel.corners.copy()
             corners[:, 2] = np.minimum(corners[:, 2], height)
-            _paint(heaps, material, _fan(corners))
+            _paint(heaps, material, np.stack([corners[[0, k, k + 1]] for k in range(1, len(corners) - 1)]))
 
 
 def _flat(ring: NDArray[np.float64], z: float) -> NDArray[np.float64]:
-    return _fan(np.column_stack([ring, np.full(len(ring), z)]))
+    return fans(ring[None], z)
 
 
 def _solid(step: Step, top: float) -> NDArray[np.float64]:
@@ -116,10 +113,6 @@ def _solid(step: Step, top: float) -> NDArray[np.float64]:
     low, high = (np.column_stack([step.polygon, np.full(len(step.polygon), z)]) for z in (step.bottom, top))
     sides = np.stack([low, np.roll(low, -1, axis=0), np.roll(high, -1, axis=0), high], axis=1)
     return np.concatenate([_flat(step.polygon, top), sides[:, [0, 1, 2]], sides[:, [0, 2, 3]]])
-
-
-def _fan(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.stack([np.stack([corners[0], corners[k], corners[k + 1]]) for k in range(1, len(corners) - 1)])
 
 
 def _add(heaps: Heaps, asset: Asset, T: NDArray[np.float64], open_fraction: float) -> None:

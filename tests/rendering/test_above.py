@@ -11,7 +11,7 @@ from pipeline.rendering.boxes import box, solid_link
 from pipeline.rendering.palette import display
 from pipeline.rendering.pose import asset_triangles, placement_transform
 from pipeline.rendering.raster import render, top_down
-from pipeline.rendering.texture import face_colours
+from pipeline.rendering.surface_colour import face_colours
 
 NOWHERE = np.zeros((0, 3, 3)), np.zeros((0, 3), np.float32)
 
