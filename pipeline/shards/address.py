@@ -115,6 +115,5 @@ class Address:
             raise
         except Exception as error:  # each kind of place has errors of its own
             lines = str(error).strip().splitlines() or [type(error).__name__]
-            raise ContentError(
-                f"{self.name} cannot be read or written ({lines[0][:200]})", "mend that and start it again: it resumes"
-            ) from error
+            message = f"{self.name} cannot be read or written ({lines[0][:200]})"
+            raise ContentError(message, "mend that and start it again: it resumes") from error

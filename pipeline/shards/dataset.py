@@ -23,19 +23,7 @@ from pipeline.shards.claims import Claims
 from pipeline.shards.commits import Commit, read_commit, record
 from pipeline.shards.disk import link, put, sync
 from pipeline.shards.header import Header, read_header
-from pipeline.shards.layout import (
-    ASSETS,
-    CLAIMS,
-    COMMITS,
-    HEADER,
-    PARTS,
-    PASSING,
-    STAGING,
-    TABLES,
-    commit_path,
-    shard_name,
-    table_path,
-)
+from pipeline.shards.layout import ASSETS, CLAIMS, COMMITS, HEADER, PARTS, PASSING, STAGING, TABLES, commit_path, shard_name, table_path
 from pipeline.shards.library import AssetSource, adopt, settle
 from pipeline.shards.parts import FILES, HomeContent, Part, join, part_place, parts_there, write_part
 from pipeline.shards.seal import SEAL, is_sealed, seal, vouches

@@ -58,9 +58,8 @@ def settle(folder: Path, source: AssetSource, staging: Path, asset_ids: set[str]
     for asset_id in sorted(asset_ids):
         place = folder / ASSETS / asset_id
         wanted = record(source.entry(asset_id), asset_id, {}, flush=False)
-        if place.exists() and (
-            wanted.first_change(place) or {p for p in place.rglob("*") if p.is_file()} != {place / p for p in wanted.files}
-        ):
+        there = {p.relative_to(place).as_posix() for p in place.rglob("*") if p.is_file()}
+        if place.exists() and (there != wanted.files.keys() or wanted.first_change(place)):
             shutil.rmtree(place)
         adopt(folder, source, staging, [asset_id])
         files |= {f"{ASSETS}/{asset_id}/{path}": entry for path, entry in wanted.files.items()}

@@ -49,11 +49,10 @@ def vouches(folder: Path, header: Header) -> bool:
 
 
 def _sealed_files(folder: Path) -> Mapping[str, Entry]:
-    try:
-        commit = read_commit(folder, SEAL)
-    except ContentError:
-        commit = None
-    return commit.files if commit else {}
+    with suppress(ContentError):
+        if commit := read_commit(folder, SEAL):
+            return commit.files
+    return {}
 
 
 def _scenes(folder: Path, table: str) -> Iterator[str]:
@@ -61,16 +60,12 @@ def _scenes(folder: Path, table: str) -> Iterator[str]:
     for path in sorted((folder / table).glob("shard-*.parquet")):
         with suppress(OSError, pa.ArrowException):
             rows = parquet(path)
-            yield from (
-                rows["scene_id"].to_pylist() if table == "scenes" else rows.filter(pc.equal(rows["what"], EMPTY))["where"].to_pylist()
-            )
-
-
-def _names(folder: Path, header: Header) -> list[str]:
-    library = [commit_path(ASSETS)] if (folder / commit_path(ASSETS)).is_file() else []
-    return [HEADER, *library, *(commit_path(shard_name(n)) for n in range(header.shards))]
+            ids = rows["scene_id"] if table == "scenes" else rows.filter(pc.equal(rows["what"], EMPTY))["where"]
+            yield from ids.to_pylist()
 
 
 def _content(folder: Path, header: Header) -> dict[str, Any]:
-    commit = Commit(SEAL, {name: entry_of(folder / name) for name in _names(folder, header)}, {}).to_json()
+    library = [ASSETS] if (folder / commit_path(ASSETS)).is_file() else []
+    names = [HEADER, *map(commit_path, [*library, *map(shard_name, range(header.shards))])]
+    commit = Commit(SEAL, {name: entry_of(folder / name) for name in names}, {}).to_json()
     return {**commit, "sha256": digest(commit)}

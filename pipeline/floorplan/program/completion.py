@@ -22,9 +22,8 @@ HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
 def complete(program: FloorProgram) -> FloorProgram:
     """Return the program with every gap filled. Completing twice changes nothing."""
     program = program.model_copy(update={"rooms": _expand(program), "shell": _shell(program)})
-    program = program.model_copy(update={"rooms": _add_missing(program)})
-    program = program.model_copy(update={"rooms": _storeys(program)})
-    program = program.model_copy(update={"rooms": _add_circulation(program)})
+    for fill in (_add_missing, _storeys, _add_circulation):
+        program = program.model_copy(update={"rooms": fill(program)})
     names(program)
     storeys(program)
     program = _join(program)
@@ -71,11 +70,9 @@ def _expand(program: FloorProgram) -> tuple[RoomReq, ...]:
 def _shell(program: FloorProgram) -> Shell:
     """Return the shell; what is usual of it gives way where outside walls would be thinner than those between rooms."""
     shell, usual = program.shell, Shell()
-    if shell.outer_wall < shell.inner_wall:
-        if shell.outer_wall == usual.outer_wall:
-            return shell.model_copy(update={"outer_wall": shell.inner_wall})
-        if shell.inner_wall == usual.inner_wall:
-            return shell.model_copy(update={"inner_wall": shell.outer_wall})
+    for name, other in (("outer_wall", "inner_wall"), ("inner_wall", "outer_wall")):
+        if shell.outer_wall < shell.inner_wall and getattr(shell, name) == getattr(usual, name):
+            return shell.model_copy(update={name: getattr(shell, other)})
     return shell
 
 
@@ -109,10 +106,8 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
                 add("studio_room", "studio")
             else:
                 add("living_room", "living")
-        lived = [r for r in rooms if r.type in {"living_room", "family_room", "studio_room"}]
-        if not types & {"bedroom", "studio_room"} and not any(
-            r.stated for r in lived
-        ):  # one that an open kitchen has brought is no bedroom
+        # a living room that an open kitchen has brought is no bedroom
+        if not types & {"bedroom", "studio_room"} and not any(r.stated for r in rooms if r.type in {"living_room", "family_room"}):
             add("bedroom", "bed")
         if "kitchen" not in types and "cooking" not in functions:
             add("kitchen", "kitchen")
