@@ -94,9 +94,8 @@ def _ring(sketch: Sketch, room: SketchRoom) -> Floats:
         raise refuse(f"{name} has no area: its corners lie on a line")
     shape = shapely.Polygon(straight)
     if not shape.is_valid:
-        raise refuse(
-            f"the outline of {name} crosses or touches itself ({explain_validity(shape)})", "give its corners in order, once around"
-        )
+        message = f"the outline of {name} crosses or touches itself ({explain_validity(shape)})"
+        raise refuse(message, "give its corners in order, once around")
     if _signed_area(straight) < 0:
         straight = straight[::-1]
         sketch.repair("clockwise", name, "its corners run clockwise and are turned round")
