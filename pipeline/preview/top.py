@@ -13,7 +13,7 @@ from pipeline.geometry.walls import Shell, levels, shell
 from pipeline.preview.building import building, is_hanging
 from pipeline.preview.labels import SMALL, draw_label, summed_area_table
 from pipeline.preview.symbols import draw_openings, draw_reach
-from pipeline.rendering.above import draw_roof
+from pipeline.rendering.above import draw_from_above
 from pipeline.rendering.raster import Frame, View, darken_edges, render, top_down
 
 MARGIN = 0.45  # around the outer walls [m]
@@ -79,7 +79,7 @@ def _solids(
         band = view.rows(top, bottom)
         frame = render(band, ground.faces, ground.colours, ground.items, BACKGROUND)
         for number, p in enumerate(standing, 1):
-            draw_roof(frame, band, assets[p.asset_id], p.position - (0.0, 0.0, elevation), p.yaw, p.scale, number)
+            draw_from_above(frame, band, assets[p.asset_id], p.position - (0.0, 0.0, elevation), p.yaw, p.scale, number)
         image.paste(Image.fromarray(frame.colour), (0, top))
         depths.append(frame.depth[::SAMPLES, ::SAMPLES].copy())
         items.append(frame.item[::SAMPLES, ::SAMPLES].copy())

@@ -19,7 +19,7 @@ TO_LIGHT = LIGHT / np.linalg.norm(LIGHT)
 
 
 @dataclass(frozen=True, slots=True)
-class Roof:
+class VisibleTop:
     """The triangles (T, 3, 3) [m, object frame] of an asset that are seen from above, and their display colours (T, 3)."""
 
     faces: NDArray[np.float32]
@@ -27,7 +27,7 @@ class Roof:
 
 
 @cached_on_asset
-def roof(asset: Asset) -> Roof:
+def visible_top(asset: Asset) -> VisibleTop:
     """Return what is seen of an asset with all joints at 0."""
     faces, _ = asset_triangles(asset)
     visible = np.zeros(len(faces), np.bool_)
@@ -36,14 +36,14 @@ def roof(asset: Asset) -> Roof:
         width, height = (int(np.clip(math.ceil(FINENESS * side), 8, MOST)) for side in high - low)
         items = render(top_down(low, high, width, height), faces, np.zeros((len(faces), 3), np.float32)).item
         visible[items[items >= 0]] = True
-    return Roof(faces[visible].astype(np.float32), display(face_colours(asset, visible)))
+    return VisibleTop(faces[visible].astype(np.float32), display(face_colours(asset, visible)))
 
 
-def draw_roof(
+def draw_from_above(
     frame: Frame, view: View, asset: Asset, position: NDArray[np.float64], yaw: float, scale: NDArray[np.float64], item: int
 ) -> None:
     """Draw an asset into a frame that looks down at `position` (3,) [m], shaded as `render` does; `item` labels its pixels."""
-    top = roof(asset)
+    top = visible_top(asset)
     pose = np.array([*position, math.cos(yaw), math.sin(yaw)])
     offset = np.array([view.width / 2, view.height / 2]) - view.scale * view.centre[:2] * (1.0, -1.0)
     scratch = np.empty((3, 3)), np.empty((3, 3), np.float32), np.empty(3, np.uint8)

@@ -13,7 +13,7 @@ from typing import Any
 from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import text_of
 from pipeline.shards.commits import Commit, parse_commit, read_commit
-from pipeline.shards.disk import put
+from pipeline.shards.disk import write_durably
 from pipeline.shards.header import Header, parse_header
 from pipeline.shards.layout import ASSETS, HEADER, commit_path, shard_name
 from pipeline.shards.seal import SEAL
@@ -95,7 +95,7 @@ class Address:
         for path in commit.files:
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (place / path).replace(folder / path)
-        put(folder / commit_path(name), text_of(commit.to_json()), staging)
+        write_durably(folder / commit_path(name), text_of(commit.to_json()), staging)
 
     def _commit(self, name: str) -> Commit | None:
         path = self._at(commit_path(name))

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from pipeline.errors import ContentError
 from pipeline.manifest import digest, sha256, text_of
 from pipeline.shards.commits import Commit, Entry, entry_of, read_commit
-from pipeline.shards.disk import put
+from pipeline.shards.disk import write_durably
 from pipeline.shards.header import Header, read_header
 from pipeline.shards.layout import ASSETS, EMPTY, HEADER, commit_path, index_of, shard_name
 from pipeline.tables import parquet
@@ -21,7 +21,7 @@ SEAL = "dataset"
 
 def seal(folder: Path, header: Header, staging: Path) -> None:
     """Write the seal of a dataset whose shards are all committed."""
-    put(folder / commit_path(SEAL), text_of(_content(folder, header)), staging)
+    write_durably(folder / commit_path(SEAL), text_of(_content(folder, header)), staging)
 
 
 def is_sealed(folder: Path, header: Header) -> bool:

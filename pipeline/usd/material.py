@@ -7,7 +7,7 @@ from pxr import Gf, Sdf
 
 from pipeline.entities.asset import Material
 from pipeline.usd.layer import apply, attribute, identifiers, label, prim, relationship
-from pipeline.usd.prim_templates import cast, group, mould
+from pipeline.usd.prim_templates import group, instantiate, template_of
 
 FRICTION = (0.7, 0.6)  # static, dynamic: dry wood, painted board
 SLIPPERY = (0.35, 0.3)  # metal, glass, glazed tiles
@@ -78,13 +78,13 @@ class Palette:
 
     def text(self) -> str:
         """Return the scope with what has been asked for so far."""
-        return cast(group(schema="Scope"), self._path, "".join(cast(_material(m), self.path(m)) for m in self._used.values()))
+        return instantiate(group(schema="Scope"), self._path, "".join(instantiate(_material(m), self.path(m)) for m in self._used.values()))
 
 
 @functools.lru_cache(maxsize=256)
 def _material(material: Material) -> str:
-    """Return the mould of a material."""
-    return mould(lambda layer: convert_material(layer, "Mould", material))
+    """Return the template of a material."""
+    return template_of(lambda layer: convert_material(layer, "Template", material))
 
 
 def bind(spec: Sdf.PrimSpec, material: Sdf.Path) -> None:

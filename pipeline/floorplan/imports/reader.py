@@ -14,11 +14,11 @@ from pipeline.entities.plan import Opening, Plan, Room, hops
 from pipeline.errors import ContentError, UsageError
 from pipeline.floorplan.imports.datasets import front_sketch, is_front, is_procthor, procthor_sketch
 from pipeline.floorplan.imports.native import native_sketch
-from pipeline.floorplan.imports.rings import apart, clean_rings, shrink, to_metres
+from pipeline.floorplan.imports.rings import clean_rings, shrink_rooms, to_metres, trim_overlaps
 from pipeline.floorplan.imports.sketch import Repair, Sketch, refuse
 from pipeline.floorplan.imports.thresholds import cut_back, put_walls
 from pipeline.floorplan.imports.types import resolve_types
-from pipeline.floorplan.imports.wall_openings import Fitted, fit, hang, put_door
+from pipeline.floorplan.imports.wall_openings import Fitted, fit_openings, hang_leaves, put_door
 from pipeline.floorplan.imports.wall_stretches import TOUCH, Stretch, stretches, touching_share
 from pipeline.floorplan.program.defaults import INTO, OUTSIDE
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Link, Range, RoomReq, Shell
@@ -114,7 +114,7 @@ def _build_plan(sketch: Sketch) -> Plan:
     outer = _thickness(sketch, "outer_wall", OUTER)
     if sketch.foreign and sketch.faces == "inner":
         cut_back(sketch, inner, outer)
-    apart(sketch)
+    trim_overlaps(sketch)
     if sketch.foreign and sketch.faces == "inner":
         put_walls(sketch, inner)
     _to_inner_faces(sketch, inner)
@@ -129,7 +129,7 @@ def _build_plan(sketch: Sketch) -> Plan:
         text = f"rooms are {widest:.2f} m apart: outside walls are taken as {outer:.3f} m thick, so that they meet"
         sketch.repair("outer_wall", "plan", text)
         walls = _walls(rooms, levels, outer)
-    fitted = fit(sketch, rooms, walls)
+    fitted = fit_openings(sketch, rooms, walls)
     _open_where_touching(sketch, walls, fitted)
     if sketch.foreign:
         _keep_main_part(sketch, rooms, walls, fitted)
@@ -137,7 +137,7 @@ def _build_plan(sketch: Sketch) -> Plan:
     _join(sketch, rooms, walls, fitted, entrance)
     between = [f.stretch.thickness for f in fitted if len(f.stretch.rooms) == 2 and f.opening.kind != "window"]
     inner = round(float(max((t for t in between if t >= TOUCH), default=inner)), 4)
-    openings = hang(sketch, fitted, rooms, hops(_passages(fitted), entrance), max(inner, outer))
+    openings = hang_leaves(sketch, fitted, rooms, hops(_passages(fitted), entrance), max(inner, outer))
     high = max(r.height for r in rooms)
     storeys = sketch.storey_height or max(STOREY, high + 0.3)
     if storeys < high + 0.05:
@@ -176,7 +176,7 @@ def _to_inner_faces(sketch: Sketch, inner: float) -> None:
         text = f"its rooms touch: corners are taken as walls' centre lines, walls are {inner:g} m thick"
     if faces == "centre":
         sketch.repair("centre_lines", "plan", text)
-        shrink(sketch, inner / 2)
+        shrink_rooms(sketch, inner / 2)
 
 
 def _open_where_touching(sketch: Sketch, walls: list[Stretch], fitted: list[Fitted]) -> None:

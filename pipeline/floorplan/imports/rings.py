@@ -119,7 +119,7 @@ def without_collinear(ring: Floats) -> Floats:
     return kept
 
 
-def apart(sketch: Sketch) -> None:
+def trim_overlaps(sketch: Sketch) -> None:
     """Trim rooms that overlap by less than SLIVER, stating it. Raises RefusedError for rooms that overlap by more.
 
     In a house of a dataset the later room gives way, however much it is, as long as one room is left of it.
@@ -147,7 +147,7 @@ def share_level(a: SketchRoom, b: SketchRoom) -> bool:
     return a.level == b.level or "staircase" in {a.type, b.type}
 
 
-def shrink(sketch: Sketch, by: float) -> None:
+def shrink_rooms(sketch: Sketch, by: float) -> None:
     """Move all walls `by` [m] into their rooms: from centre lines to inner faces."""
     for room in sketch.rooms:
         inner = shapely.Polygon(room.ring).buffer(-by, join_style="mitre", mitre_limit=10.0)

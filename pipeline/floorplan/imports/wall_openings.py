@@ -34,7 +34,7 @@ class Fitted:
     stretch: Stretch
 
 
-def fit(sketch: Sketch, rooms: Sequence[Room], walls: Sequence[Stretch]) -> list[Fitted]:
+def fit_openings(sketch: Sketch, rooms: Sequence[Room], walls: Sequence[Stretch]) -> list[Fitted]:
     """Put every opening of the sketch into a wall. Raises RefusedError for one that has none; in a house of a dataset it is left out."""
     known = {r.room_id: r for r in rooms}
     placed: list[Fitted] = []
@@ -210,7 +210,7 @@ def _heights(sketch: Sketch, wish: SketchOpening, ceiling: float) -> tuple[float
     return round(height, 4), round(sill, 4)
 
 
-def hang(sketch: Sketch, fitted: list[Fitted], rooms: Sequence[Room], depth: dict[str, int], thickness: float) -> list[Opening]:
+def hang_leaves(sketch: Sketch, fitted: list[Fitted], rooms: Sequence[Room], depth: dict[str, int], thickness: float) -> list[Opening]:
     """Give every door a leaf that swings freely: as the file states it, else into the room farther from the entrance."""
     floors = {r.room_id: shapely.Polygon(r.polygon) for r in rooms}
     kinds = {r.room_id: r.type for r in rooms}

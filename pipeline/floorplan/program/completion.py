@@ -4,10 +4,10 @@ from collections import Counter
 from collections.abc import Sequence
 
 from pipeline.floorplan.program.areas import with_areas
-from pipeline.floorplan.program.consistency import names, reach, storeys
+from pipeline.floorplan.program.consistency import check_names, check_storeys, reach
 from pipeline.floorplan.program.defaults import INTO
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, RoomReq, RoomType, Shell
-from pipeline.floorplan.program.furniture import allot, matching_categories, spread
+from pipeline.floorplan.program.furniture import allot_pieces, matching_categories, spread
 from pipeline.floorplan.program.links import connect, distances, is_forbidden, nearness, resolve
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
@@ -24,11 +24,11 @@ def complete(program: FloorProgram) -> FloorProgram:
     program = program.model_copy(update={"rooms": _expand(program), "shell": _shell(program)})
     for fill in (_add_missing, _storeys, _add_circulation):
         program = program.model_copy(update={"rooms": fill(program)})
-    names(program)
-    storeys(program)
+    check_names(program)
+    check_storeys(program)
     program = _join(program)
     program = _make_irregular(program.model_copy(update={"entrance": _entrance(program)}))
-    return allot(with_areas(_with_dining(spread(program))))
+    return allot_pieces(with_areas(_with_dining(spread(program))))
 
 
 def _with_dining(program: FloorProgram) -> FloorProgram:

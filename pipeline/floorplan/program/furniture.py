@@ -95,7 +95,7 @@ def spread(program: FloorProgram) -> FloorProgram:
     return program.model_copy(update={"rooms": tuple(rooms), "furniture": left})
 
 
-def allot(program: FloorProgram) -> FloorProgram:
+def allot_pieces(program: FloorProgram) -> FloorProgram:
     """Share the home's number of pieces, and of pieces that open, among its rooms by their areas; what a room states stays."""
     wish, rooms = program.furniture, list(program.rooms)
     bound = wish.most if wish.most is not None else wish.least

@@ -117,7 +117,7 @@ class Scratch(NamedTuple):
     rect: Ints  # (m, 4) rectangles of the proposal
     nodes: Ints  # (2m-1, 7) and
     sums: Floats  # (2m-1,) as `lay_out` wants them
-    travel: Floats  # (n, 4) as `leaning` wants it
+    travel: Floats  # (n, 4) as `topology_cost` wants it
 
 
 @borrowing

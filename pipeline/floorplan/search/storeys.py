@@ -20,7 +20,7 @@ OPEN_FRONT, PORTAL = 1.5, 1.2  # least clear widths [m]
 # How far an unstated area may miss its target: a share, and a strip of this width [m] along one side, for the raster; where nothing else helps.
 LOOSE, STRIP, EASED = 0.02, 0.2, 0.4
 SMALL, BUSY = 7.0, 3  # rooms of less area [m2] or so many links give up their outside wall first
-HALL_HEED = 0.25  # how much an unstated hallway's usual area counts beside that of a room
+HALL_WEIGHT = 0.25  # how much an unstated hallway's usual area counts beside that of a room
 FLIGHTS = (2.85, 2.1)  # what two flights side by side take, with their landings [m]: 16 risers of 0.18 m, treads of 0.27 m
 SOFTER = (1.0, 0.3, 0.1, 0.03)  # factors on the weights of all terms then: what must be comes before what should
 EASED_HALL = 1.95  # how much larger than its target an unstated hallway may be then
@@ -108,7 +108,7 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
         unit=UNIT, half=half,
         root=index.get(program.entrance.into or "", max(stairs, 0)),
         target=target, low=low, high=high, total=_total(program),
-        heed=np.where(flexible, HALL_HEED, 1.0),
+        area_weight=np.where(flexible, HALL_WEIGHT, 1.0),
         inside=np.array([int(r.type not in OUTSIDE) for r in rooms]),
         least=least, strict=strict, square=square, habitable=habitable, useful=useful,
         corridor=np.array([int(r.type == "hallway") for r in rooms]),

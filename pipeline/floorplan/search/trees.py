@@ -51,7 +51,7 @@ class Trees:
         self.low = np.concatenate([request.gross_low, empty * 0.7])
         self.high = np.concatenate([request.gross_high, empty * 1.3])
         square = np.where(spec.square > 0, 0.6, 0.08) * 2.0**program.style.squareness
-        flexible = request.weights.area * 4.0 / n * spec.heed * (request.gross_high > request.gross_low)
+        flexible = request.weights.area * 4.0 / n * spec.area_weight * (request.gross_high > request.gross_low)
         pairs = np.argwhere(np.triu((spec.need > 0) | (spec.ban > 0) | (spec.apart > 0), 1))
         one, other = pairs.T
         numbers = np.ascontiguousarray(np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]]))
