@@ -68,13 +68,11 @@ def placement_text(parent: str, placement: Placement, assets: Mapping[str, Asset
     """
     asset = assets.get(placement.asset_id)
     if asset is None:
-        raise ContentError(
-            f"object {placement.object_id} places asset {placement.asset_id!r}, which is not in the library", "run preprocess again"
-        )
+        message = f"object {placement.object_id} places asset {placement.asset_id!r}, which is not in the library"
+        raise ContentError(message, "run preprocess again")
     if asset.articulated and any(abs(s - 1) > 1e-9 for s in placement.scale):
-        raise ContentError(
-            f"object {placement.object_id} scales the articulated asset {asset.asset_id}", "place it with scale 1: joints break otherwise"
-        )
+        message = f"object {placement.object_id} scales the articulated asset {asset.asset_id}"
+        raise ContentError(message, "place it with scale 1: joints break otherwise")
     about = f"bool articulated = {int(asset.articulated)}\nstring room_id = {quote(placement.room_id)}\n"
     support = f"rel sfgen:support = <{parent}/{placement.support}>\n" if placement.support else ""
     return (

@@ -25,9 +25,8 @@ def lamp(path: str, room: Room, elevation: float) -> str:
     x, y = _inside(Polygon(room.polygon))
     side = float(np.clip(0.16 * np.sqrt(room.area), 0.25, 0.9))
     size = f"float inputs:width = {side!r}\nfloat inputs:height = {side!r}\n"
-    return instantiate(
-        _light("RectLight", LAMP_INTENSITY, (1.0, 0.93, 0.82)), path, transform_ops((x, y, elevation + room.height - LAMP_GAP)) + size
-    )
+    where = transform_ops((x, y, elevation + room.height - LAMP_GAP))
+    return instantiate(_light("RectLight", LAMP_INTENSITY, (1.0, 0.93, 0.82)), path, where + size)
 
 
 @functools.cache
