@@ -197,12 +197,9 @@ def _text_block(lines: Sequence[str], at: tuple[float, float], size: float) -> I
 def _place(room: Room, free: shapely.Geometry, width: float, height: float) -> tuple[float, float] | None:
     """Return the middle of a free box of that size nearest to the room's middle."""
     x0, y0, x1, y1 = shapely.Polygon(room.polygon).bounds
-    xs, ys = (
-        a.ravel()
-        for a in np.meshgrid(np.arange(x0 + width / 2, x1 - width / 2 + 1e-9, 0.1), np.arange(y0 + height / 2, y1 - height / 2 + 1e-9, 0.1))
-    )
+    columns, rows = np.arange(x0 + width / 2, x1 - width / 2 + 1e-9, 0.1), np.arange(y0 + height / 2, y1 - height / 2 + 1e-9, 0.1)
     middle = label_point(room)
-    xs, ys = np.append(xs, middle[0]), np.append(ys, middle[1])
+    xs, ys = (np.append(places, at) for places, at in zip(np.meshgrid(columns, rows), middle, strict=True))
     shapely.prepare(free)
     fits = shapely.contains(free, shapely.box(xs - width / 2, ys - height / 2, xs + width / 2, ys + height / 2))
     if not fits.any():
@@ -225,9 +222,7 @@ def _dimensions(around: Sequence[float]) -> Iterator[Mark]:
     low, left, tick = y0 - AWAY, x0 - AWAY, 0.1
     yield Line(np.array([[x0, low], [x1, low]]), FAINT)
     yield Line(np.array([[left, y0], [left, y1]]), FAINT)
-    for x in (x0, x1):
-        yield Line(np.array([[x - tick, low - tick], [x + tick, low + tick]]), FAINT)
-    for y in (y0, y1):
-        yield Line(np.array([[left - tick, y - tick], [left + tick, y + tick]]), FAINT)
+    for x, y in ((x0, low), (x1, low), (left, y0), (left, y1)):
+        yield Line(np.array([[x - tick, y - tick], [x + tick, y + tick]]), FAINT)
     yield Words(f"{x1 - x0:.2f} m", ((x0 + x1) / 2, low - 0.22), 0.2, "#5c5f64")
     yield Words(f"{y1 - y0:.2f} m", (left - 0.22, (y0 + y1) / 2), 0.2, "#5c5f64", turned=True)

@@ -188,11 +188,7 @@ def _of_rooms(total: float, rect: Ints, width: int, height: int, n: int, gross: 
 def _outside(rect: Ints, a: int, width: int, height: int, n: int) -> int:
     """Return the longest stretch of outside wall of a rectangle [cells], walls to voids included."""
     w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
-    best = 0
-    if rect[a, 0] == 0 or rect[a, 2] == width:
-        best = h
-    if (rect[a, 1] == 0 or rect[a, 3] == height) and w > best:
-        best = w
+    best = max(h * (rect[a, 0] == 0 or rect[a, 2] == width), w * (rect[a, 1] == 0 or rect[a, 3] == height))
     for v in range(n, rect.shape[0]):
         best = max(best, contact(rect, a, v))
     return int(best)
@@ -217,11 +213,7 @@ def _of_order(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> floa
 def _of_voids(total: float, rect: Ints, width: int, height: int, n: int) -> float:
     """Add what voids cost that are not in a corner, or long."""
     for v in range(n, rect.shape[0]):
-        sides = 0
-        if (rect[v, 0] == 0) != (rect[v, 2] == width):
-            sides += 1
-        if (rect[v, 1] == 0) != (rect[v, 3] == height):
-            sides += 1
+        sides = ((rect[v, 0] == 0) != (rect[v, 2] == width)) + ((rect[v, 1] == 0) != (rect[v, 3] == height))
         total += 15.0 * (2 - sides)
         w, h = rect[v, 2] - rect[v, 0], rect[v, 3] - rect[v, 1]
         total += 0.5 * (max(w, h) / min(w, h) - 1.0)

@@ -76,11 +76,9 @@ class Trees:
         for i, (x0, y0, x1, y1) in enumerate(rects.tolist()):
             grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = min(i, n)
         cut = rects[n:]
-        corners = [
-            (x0 == 0) != (x1 == width) and (y0 == 0) != (y1 == height) and min(x1 - x0, y1 - y0) >= LEAST_CUT
-            for x0, y0, x1, y1 in cut.tolist()
-        ]
-        if not all(corners) or (self.voids == 2 and not _same_side(cut)):
+        x0, y0, x1, y1 = cut.T
+        corners = ((x0 == 0) != (x1 == width)) & ((y0 == 0) != (y1 == height)) & (np.minimum(x1 - x0, y1 - y0) >= LEAST_CUT)
+        if not corners.all() or (self.voids == 2 and not _same_side(cut)):
             return grid, np.inf
         if spec.stair_room >= 0:
             stamp(grid, spec.stair_room, tuple(spec.stair.tolist()), n)
