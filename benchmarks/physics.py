@@ -57,7 +57,7 @@ def asset_stage(ids: list[str], folder: Path) -> Path:
     from pipeline.usd.layer import read_layer, save
     from pipeline.usd.mesh import convert_mesh
     from pipeline.usd.physics import convert_collider, convert_scene
-    from pipeline.usd.prim_templates import cast, group
+    from pipeline.usd.prim_templates import group, instantiate
 
     assets = [load_asset(ROOT / "data" / "assets" / f"{name}.safetensors") for name in ids]
     write_library(assets, folder / "assets")
@@ -74,7 +74,9 @@ def asset_stage(ids: list[str], folder: Path) -> Path:
         x, deep = x + high[0] - low[0] + PITCH, max(deep, high[1] - low[1])
         if x > 25:
             x, y, deep = 0.0, y + deep + PITCH, 0.0
-    layer = read_layer(cast(group("assembly"), "/World", cast(group("group"), "/World/Objects", "".join(objects))), "World", ".usdc", {})
+    layer = read_layer(
+        instantiate(group("assembly"), "/World", instantiate(group("group"), "/World/Objects", "".join(objects))), "World", ".usdc", {}
+    )
     convert_scene(layer)
     world = layer.GetPrimAtPath("/World")
     floor = convert_mesh(world, "floor", box("floor", (-30.0, -30.0, -0.5), (60.0, 60.0, 0.0)), (0.5, 0.5, 0.5))

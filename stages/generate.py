@@ -12,7 +12,7 @@ from pipeline.floorplan import FloorProgram, describe, plan_json, request
 from pipeline.floorplan.draw.drawing import svg
 from pipeline.floorplan.imports import describe_repairs, program_of, read_own
 from pipeline.floorplan.program.description import assumptions, notes
-from pipeline.floorplan.prompt import understood
+from pipeline.floorplan.prompt import require_understood
 from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.empty_plan import require_sound
 from pipeline.homes.factory import open_factory
@@ -89,7 +89,7 @@ def asked_by_plan(
     own = require_sound(root, read_own(source, house))
     program = program_of(own.plan)
     if prompt:
-        program = understood(with_wishes(program, require_prompt(prompt)), strict=strict)
+        program = require_understood(with_wishes(program, require_prompt(prompt)), strict=strict)
     document = json.dumps(plan_json(own.plan))
     return program, Request(0, prompt or describe(program), program.model_dump_json(exclude_defaults=True), document), own.repairs_json()
 

@@ -3,6 +3,7 @@
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
+from xml.etree.ElementTree import Element, indent, tostring
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,10 +65,16 @@ def quaternion(T: Floats) -> Floats:
     return Rotation.from_matrix(T[:3, :3]).as_quat(canonical=True, scalar_first=True)  # type: ignore[no-any-return]
 
 
+def xml_bytes(root: Element) -> bytes:
+    """Return the indented text of an XML file."""
+    indent(root)
+    return tostring(root) + b"\n"
+
+
 def _mtl(material: Material) -> str:
     color = "{} {} {}".format(*display(material.color))
-    lines = [f"newmtl {material.name}", f"Kd {color}", f"d {material.opacity:g}"]
-    return "\n".join([*lines, *([f"map_Kd {material.texture.name}"] if material.texture else []), "", ""])
+    texture = f"map_Kd {material.texture.name}\n" if material.texture else ""
+    return f"newmtl {material.name}\nKd {color}\nd {material.opacity:g}\n{texture}\n"
 
 
 def _rows(key: str, values: NDArray[np.float32]) -> list[str]:

@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
@@ -129,7 +130,6 @@ def _whole(target: Path, fill: Callable[[Path], object]) -> None:
 
 
 def _header(path: Path) -> object:
-    try:
+    with suppress(OSError, ValueError):
         return json.loads((path / HEADER).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
+    return None

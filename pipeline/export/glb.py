@@ -23,7 +23,7 @@ def scene_glb(scene: Scene, licence: str) -> bytes:
     """Return a home as GLB."""
     writer = _Writer()
     tops = [writer.place(scene.models[placed.model], placed) for placed in scene.placed]
-    return writer.packed(scene.scene_id, tops, licence)
+    return writer.to_bytes(scene.scene_id, tops, licence)
 
 
 class _Writer:
@@ -60,7 +60,7 @@ class _Writer:
         _move(self._nodes[node], placed.T_world_model, placed.scale)
         return node
 
-    def packed(self, name: str, tops: list[int], licence: str) -> bytes:
+    def to_bytes(self, name: str, tops: list[int], licence: str) -> bytes:
         """Return the whole file."""
         root = self._node(name, tops)
         self._nodes[root]["rotation"] = UPRIGHT

@@ -5,23 +5,22 @@ Static friction has no place in MuJoCo; its one coefficient is the dynamic one.
 """
 
 from collections.abc import Mapping
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
-from pipeline.export.files import display, numbers, position, quaternion
+from pipeline.export.files import display, numbers, position, quaternion, xml_bytes
 from pipeline.export.model import Body, Floats, Inertia, Joint, Material, Model, Placed, Scene, inverse
 
 TIMESTEP = 0.002  # [s], MuJoCo's own default
-ONE = np.ones(3)
 
 
 def model_xml(model: Model) -> bytes:
     """Return a model alone, in the folder of its meshes."""
     root = _root(model.name)
     writer = _Writer(root, {model.name: model}, {model.name: "."})
-    writer.place(Placed(model.name, "object", model.name, np.eye(4), ONE, ""))
-    return _bytes(root)
+    writer.place(Placed(model.name, "object", model.name, np.eye(4), np.ones(3), ""))
+    return xml_bytes(_without_empty(root))
 
 
 def scene_xml(scene: Scene, folders: Mapping[str, str]) -> bytes:
@@ -30,7 +29,7 @@ def scene_xml(scene: Scene, folders: Mapping[str, str]) -> bytes:
     writer = _Writer(root, scene.models, folders)
     for placed in scene.placed:
         writer.place(placed)
-    return _bytes(root)
+    return xml_bytes(_without_empty(root))
 
 
 class _Writer:
@@ -152,13 +151,8 @@ def _root(name: str, asleep: float = 0.0) -> Element:
 
 
 def _inertial(element: Element, inertia: Inertia) -> None:
-    about: dict[str, Floats | list[float]] = {
-        "pos": inertia.center,
-        "quat": inertia.axes,
-        "mass": [inertia.mass],
-        "diaginertia": inertia.moments,
-    }
-    SubElement(element, "inertial", {name: numbers(values) for name, values in about.items()})
+    pos, axes, moments = (numbers(values) for values in (inertia.center, inertia.axes, inertia.moments))
+    SubElement(element, "inertial", pos=pos, quat=axes, mass=numbers([inertia.mass]), diaginertia=moments)
 
 
 def _scale_translation(T: Floats, scale: Floats) -> Floats:
@@ -168,8 +162,7 @@ def _scale_translation(T: Floats, scale: Floats) -> Floats:
     return T_scaled
 
 
-def _bytes(root: Element) -> bytes:
+def _without_empty(root: Element) -> Element:
     for section in [section for section in root if section.tag in {"asset", "contact"} and not len(section)]:
         root.remove(section)
-    indent(root)
-    return tostring(root) + b"\n"
+    return root

@@ -53,9 +53,8 @@ def read_pieces(
         if image.ComputePurpose() != "guide" and image.ComputeVisibility() != "invisible":
             visuals[_group(prim, body), _material(prim)].append(_corners(prim, T, points, counts, indices))
     merged = [_merge(f"{body.GetName()}_{i}", group, look, parts) for i, ((group, look), parts) in enumerate(visuals.items())]
-    handles = [surface.points for surface in merged if surface.group == "handle"]
-    handle = np.concatenate([(p.max(axis=0) + p.min(axis=0))[None] / 2 for p in handles]).mean(axis=0) if handles else None
-    return tuple(merged), tuple(boxes), tuple(hulls), None if handle is None else handle.astype(np.float64)
+    handles = [(s.points.max(axis=0) + s.points.min(axis=0)) / 2 for s in merged if s.group == "handle"]
+    return tuple(merged), tuple(boxes), tuple(hulls), np.mean(handles, axis=0).astype(np.float64) if handles else None
 
 
 def _gprims(body: Usd.Prim, others: set[Sdf.Path]) -> Iterator[Usd.Prim]:
@@ -71,16 +70,13 @@ def _polygons(prim: Usd.Prim) -> tuple[Floats, NDArray[np.int64], NDArray[np.int
     """Return points (n, 3), vertices per face and their indices, in the prim's frame."""
     if prim.IsA(UsdGeom.Mesh):
         mesh = UsdGeom.Mesh(prim)
-        arrays = mesh.GetPointsAttr().Get(), mesh.GetFaceVertexCountsAttr().Get(), mesh.GetFaceVertexIndicesAttr().Get()
-        points, counts, indices = np.array(arrays[0], np.float64), np.array(arrays[1], np.int64), np.array(arrays[2], np.int64)
-    elif prim.IsA(UsdGeom.Cube):
-        side = UsdGeom.Cube(prim).GetSizeAttr().Get() / 2
-        points = np.array(list(product((-side, side), repeat=3)))
-        indices = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]], np.int64).ravel()
-        counts = np.full(6, 4, np.int64)
-    else:
+        counts, indices = (np.array(a.Get(), np.int64) for a in (mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()))
+        return np.array(mesh.GetPointsAttr().Get(), np.float64), counts, indices
+    if not prim.IsA(UsdGeom.Cube):
         raise ContentError(f"{prim.GetPath()} is a {prim.GetTypeName()}", "only meshes and cubes can be exported")
-    return points, counts, indices
+    side = UsdGeom.Cube(prim).GetSizeAttr().Get() / 2
+    indices = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]], np.int64).ravel()
+    return np.array(list(product((-side, side), repeat=3))), np.full(6, 4, np.int64), indices
 
 
 def _collider(prim: Usd.Prim, points: Floats, name: str, path: str) -> Box | Hull:
@@ -152,11 +148,10 @@ def _spread(values: Floats, interpolation: str, indices: NDArray[np.int64], corn
 def _merge(name: str, group: str, material: Material, parts: list[Corners]) -> Surface:
     """Join meshes of one look, corners that are equal in all but their face written once."""
     textured = any(part.uv is not None for part in parts) and material.texture is not None
-    rows = [
-        np.hstack([p.points, p.normals, *([p.uv if p.uv is not None else np.zeros((len(p.points), 2))] if textured else [])]) for p in parts
-    ]
-    unique, inverse = np.unique(np.concatenate(rows).astype(np.float32), axis=0, return_inverse=True)
-    faces = inverse.reshape(-1, 3).astype(np.int32)
+    uvs = [np.zeros((len(p.points), 2)) if p.uv is None else p.uv for p in parts]
+    rows = [np.hstack([p.points, p.normals, *([uv] if textured else [])]) for p, uv in zip(parts, uvs, strict=True)]
+    unique, corner = np.unique(np.concatenate(rows).astype(np.float32), axis=0, return_inverse=True)
+    faces = corner.reshape(-1, 3).astype(np.int32)
     faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 0] != faces[:, 2])]
     return Surface(name, group, material, unique[:, :3], unique[:, 3:6], unique[:, 6:8] if textured else None, faces)
 

@@ -3,18 +3,20 @@
 The overlays for MuJoCo are read where there are any: only they tell how hard the stops are.
 """
 
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
 from pxr import Pcp, Sdf, Usd, UsdGeom, UsdPhysics
+from scipy.spatial.transform import Rotation
 
 from pipeline.errors import ContentError
-from pipeline.export.joints import read_joints
-from pipeline.export.model import Body, Floats, Inertia, Model, Placed, Scene, inverse
+from pipeline.export.model import Body, Floats, Inertia, Joint, Model, Placed, Scene, inverse
 from pipeline.export.pieces import read_pieces, world
 
 VARIANT = "MuJoCo"
+DEGREE = math.degrees(1.0)
 GROUPS = {"Rooms": "room", "Walls": "wall", "Windows": "window", "Doors": "door", "Objects": "object"}
 REMEDY = "run `sfgen verify` on the dataset; if it is whole, please report it"
 
@@ -28,13 +30,10 @@ def read_home(path: Path, scene_id: str, asset: Callable[[Path], Model]) -> Scen
     placed = []
     for prim, kind in _things(stage.GetDefaultPrim()):
         source = _reference(prim)
-        if source:
-            model, matrix = asset(source), world(cache, prim)
-        else:
-            name = f"{kind}_{prim.GetName()}" if kind in {"room", "wall"} else prim.GetName()
-            model, matrix = read_model(prim, name, shared=False), world(cache, prim)
+        name = f"{kind}_{prim.GetName()}" if kind in {"room", "wall"} else prim.GetName()
+        model = asset(source) if source else read_model(prim, name, shared=False)
         models[model.name] = model
-        rigid, scale = _split(matrix, prim)
+        rigid, scale = _split(world(cache, prim), prim)
         if not model.still and np.abs(scale - 1).max() > 1e-6:
             raise ContentError(f"{path}: {prim.GetPath()} moves and is scaled", REMEDY)
         support = prim.GetRelationship("sfgen:support")
@@ -64,10 +63,11 @@ def read_model(root: Usd.Prim, name: str, *, shared: bool) -> Model:
         ground = _body(root, root, cache, paths)
         bodies += [ground] if not bodies or ground.surfaces or ground.boxes or ground.hulls else []
     index = {p.GetPath(): i for i, p in enumerate(prims)}
-    joints, grounded = read_joints(root, index, cache)
+    joints, grounded = _joints(root, index, cache)
     grounded |= {i for i, body in enumerate(bodies) if body.inertia is None}
     _require_tree(len(bodies), [(j.parent, j.child) for j in joints], root)
-    pairs = {tuple(sorted((index[p.GetPath()], index[t]))) for p in prims for t in _filtered_pairs(p) if t in index}
+    filtered = [(p, UsdPhysics.FilteredPairsAPI(p).GetFilteredPairsRel()) for p in prims if p.HasAPI(UsdPhysics.FilteredPairsAPI)]
+    pairs = {tuple(sorted((index[p.GetPath()], index[t]))) for p, others in filtered for t in others.GetTargets() if t in index}
     return Model(name, shared, tuple(bodies), tuple(joints), frozenset(grounded), tuple(sorted(pairs)))  # type: ignore[arg-type]
 
 
@@ -117,10 +117,6 @@ def _inertia(prim: Usd.Prim) -> Inertia | None:
     return Inertia(float(mass), np.array(api.GetCenterOfMassAttr().Get(), np.float64), np.array(moments, np.float64), quaternion)
 
 
-def _filtered_pairs(prim: Usd.Prim) -> list[Sdf.Path]:
-    return list(UsdPhysics.FilteredPairsAPI(prim).GetFilteredPairsRel().GetTargets()) if prim.HasAPI(UsdPhysics.FilteredPairsAPI) else []
-
-
 def _require_tree(count: int, edges: list[tuple[int, int]], root: Usd.Prim) -> None:
     parents = {child: parent for parent, child in edges}
     if len(parents) != len(edges):
@@ -141,3 +137,79 @@ def _split(matrix: Floats, prim: Usd.Prim) -> tuple[Floats, Floats]:
     if np.abs(rigid[:3, :3] @ rigid[:3, :3].T - np.eye(3)).max() > 1e-5 or np.linalg.det(rigid[:3, :3]) < 0:
         raise ContentError(f"{prim.GetPath()} is sheared or mirrored", REMEDY)
     return rigid, np.where(np.abs(scale - 1) < 1e-9, 1.0, scale)
+
+
+def _joints(root: Usd.Prim, index: Mapping[Sdf.Path, int], cache: UsdGeom.XformCache) -> tuple[list[Joint], set[int]]:
+    """Return the joints under `root` between bodies of `index`: what they join, about which axis, how far; and the bodies that one holds to the ground."""
+    joints, grounded = [], set()
+    for prim in Usd.PrimRange(root, Usd.TraverseInstanceProxies()):
+        if not prim.IsA(UsdPhysics.Joint) or not UsdPhysics.Joint(prim).GetJointEnabledAttr().Get():
+            continue
+        joint = UsdPhysics.Joint(prim)
+        parent, T_parent = _end(joint.GetBody0Rel(), joint.GetLocalPos0Attr(), joint.GetLocalRot0Attr(), index, root, cache)
+        child, T_child = _end(joint.GetBody1Rel(), joint.GetLocalPos1Attr(), joint.GetLocalRot1Attr(), index, root, cache)
+        if prim.IsA(UsdPhysics.FixedJoint) and min(parent, child) < 0:
+            grounded.add(max(parent, child))
+            continue
+        if child < 0:
+            raise ContentError(f"{prim.GetPath()} carries nothing", "its body1 must be a rigid body")
+        joints.append(_joint(prim, parent, child, T_parent, T_child))
+    return joints, grounded
+
+
+def _end(
+    body: Usd.Relationship,
+    position: Usd.Attribute,
+    rotation: Usd.Attribute,
+    index: Mapping[Sdf.Path, int],
+    root: Usd.Prim,
+    cache: UsdGeom.XformCache,
+) -> tuple[int, Floats]:
+    """Return the body at one end of a joint, -1 for the ground, and the joint's frame in it (in the model, for the ground)."""
+    local, turned = np.eye(4), rotation.Get()
+    local[:3, :3] = Rotation.from_quat([turned.GetReal(), *turned.GetImaginary()], scalar_first=True).as_matrix()
+    local[:3, 3] = position.Get()
+    targets = body.GetTargets()
+    if targets and targets[0] in index:
+        return index[targets[0]], local
+    holder = root.GetStage().GetPrimAtPath(targets[0]) if targets else None
+    T_world_joint = world(cache, holder) @ local if holder else local
+    return -1, inverse(world(cache, root)) @ T_world_joint
+
+
+def _joint(prim: Usd.Prim, parent: int, child: int, T_parent: Floats, T_child: Floats) -> Joint:
+    if prim.IsA(UsdPhysics.RevoluteJoint):
+        kind, typed, drive, unit = "hinge", UsdPhysics.RevoluteJoint(prim), "angular", DEGREE
+    elif prim.IsA(UsdPhysics.PrismaticJoint):
+        kind, typed, drive, unit = "slide", UsdPhysics.PrismaticJoint(prim), "linear", 1.0
+    elif prim.IsA(UsdPhysics.FixedJoint):
+        return Joint(prim.GetName(), "fixed", parent, child, T_parent, T_child, np.zeros(3), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (), ())
+    else:
+        raise ContentError(f"{prim.GetPath()} is a {prim.GetTypeName()}", "only hinges, slides and welds can be exported")
+    driven = UsdPhysics.DriveAPI.Get(prim, drive)
+    attributes = (driven.GetDampingAttr(), driven.GetStiffnessAttr(), driven.GetTargetPositionAttr()) if driven else ()
+    damping, stiffness, rest = [attribute.Get() for attribute in attributes] or (0.0, 0.0, 0.0)
+    stops = [prim.GetAttribute(f"mjc:{name}").Get() for name in ("solreflimit", "solimplimit")]
+    after = prim.GetRelationship("sfgen:after")
+    return Joint(
+        prim.GetName(),
+        kind,
+        parent,
+        child,
+        T_parent,
+        T_child,
+        np.eye(3)["XYZ".index(typed.GetAxisAttr().Get())],
+        typed.GetLowerLimitAttr().Get() / unit,
+        typed.GetUpperLimitAttr().Get() / unit,
+        damping * unit,
+        _number(prim, "newton:friction"),
+        _number(prim, "newton:armature"),
+        stiffness * unit,
+        rest / unit,
+        tuple(tuple(map(float, values)) for values in stops) if all(stops) else (),
+        tuple(path.name for path in after.GetTargets()) if after else (),
+    )
+
+
+def _number(prim: Usd.Prim, name: str) -> float:
+    return float(prim.GetAttribute(name).Get() or 0.0) if prim.HasAttribute(name) else 0.0

@@ -7,21 +7,20 @@ A link's frame lies in its joint, as the format wants it, and is turned as its b
 
 from collections.abc import Mapping
 from typing import Any
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from pipeline.errors import ContentError
-from pipeline.export.files import display, numbers, position, quaternion
+from pipeline.export.files import display, numbers, position, quaternion, xml_bytes
 from pipeline.export.model import Body, Floats, Inertia, Joint, Model, Scene, inverse
 
 KINDS = {"hinge": "revolute", "slide": "prismatic", "fixed": "fixed"}
-ONE = np.ones(3)
 STRONG = {"effort": "1000", "velocity": "100"}  # which URDF demands of every limit and USD does not bound
 
 
-def model_urdf(model: Model, folder: str = ".") -> bytes:
+def model_urdf(model: Model, folder: str) -> bytes:
     """Return a model as a robot; `folder` is where its meshes lie, as seen from the file."""
     robot = Element("robot", name=model.name)
     joints = {joint.child: joint for joint in model.joints}
@@ -33,14 +32,14 @@ def model_urdf(model: Model, folder: str = ".") -> bytes:
     if based:
         SubElement(robot, "link", name="root")
     for i, body in enumerate(model.bodies):
-        _link(robot, body, body.name, folder, _body_link(joints.get(i)), ONE)
+        _link(robot, body, body.name, folder, _body_link(joints.get(i)), np.ones(3))
     for i in roots if based else []:
         _fix(robot, "root", model.bodies[i].name, model.bodies[i].T_model_body)
     for joint in model.joints:
         parent = model.bodies[joint.parent].name if joint.parent >= 0 else "root"
         T_parent_body = inverse(_body_link(joints.get(joint.parent))) @ joint.T_parent_joint
         _joint(robot, joint, parent, model.bodies[joint.child].name, T_parent_body @ inverse(joint.T_child_joint) @ _body_link(joint))
-    return _bytes(robot)
+    return xml_bytes(robot)
 
 
 def model_srdf(model: Model) -> bytes:
@@ -48,7 +47,7 @@ def model_srdf(model: Model) -> bytes:
     robot = Element("robot", name=model.name)
     for a, b in model.passes:
         SubElement(robot, "disable_collisions", link1=model.bodies[a].name, link2=model.bodies[b].name, reason="Default")
-    return _bytes(robot)
+    return xml_bytes(robot)
 
 
 def building_urdf(scene: Scene, folders: Mapping[str, str]) -> bytes:
@@ -62,7 +61,7 @@ def building_urdf(scene: Scene, folders: Mapping[str, str]) -> bytes:
                 name = placed.name if len(model.bodies) == 1 else f"{placed.name}_{body.name}"
                 _link(robot, body, name, folders[model.name], np.eye(4), placed.scale)
                 _fix(robot, "building", name, placed.T_world_model @ body.T_model_body)
-    return _bytes(robot)
+    return xml_bytes(robot)
 
 
 def placements(scene: Scene, files: Mapping[str, str]) -> dict[str, Any]:
@@ -120,10 +119,7 @@ def _inertial(link: Element, inertia: Inertia, shift: Floats) -> None:
 def _joint(robot: Element, joint: Joint, parent: str, child: str, T_parent_link: Floats) -> None:
     limited = bool(np.isfinite([joint.lower, joint.upper]).all())
     kind = KINDS[joint.kind] if limited or joint.kind == "fixed" else {"hinge": "continuous", "slide": "prismatic"}[joint.kind]
-    element = SubElement(robot, "joint", name=joint.name, type=kind)
-    SubElement(element, "parent", link=parent)
-    SubElement(element, "child", link=child)
-    _origin(element, T_parent_link)
+    element = _connect(robot, joint.name, kind, parent, child, T_parent_link)
     if kind == "fixed":
         return
     SubElement(element, "axis", xyz=numbers(joint.T_child_joint[:3, :3] @ joint.axis))
@@ -132,16 +128,18 @@ def _joint(robot: Element, joint: Joint, parent: str, child: str, T_parent_link:
     SubElement(element, "dynamics", damping=numbers([joint.damping]), friction=numbers([joint.friction]))
 
 
-def _fix(robot: Element, parent: str, child: str, T: Floats) -> None:
-    element = SubElement(robot, "joint", name=f"{child}_fixed", type="fixed")
+def _fix(robot: Element, parent: str, child: str, T_parent_child: Floats) -> None:
+    _connect(robot, f"{child}_fixed", "fixed", parent, child, T_parent_child)
+
+
+def _connect(robot: Element, name: str, kind: str, parent: str, child: str, T_parent_child: Floats) -> Element:
+    """Return a new joint between two links."""
+    element = SubElement(robot, "joint", name=name, type=kind)
     SubElement(element, "parent", link=parent)
     SubElement(element, "child", link=child)
-    _origin(element, T)
-
-
-def _origin(element: Element, T: Floats) -> None:
-    angles = Rotation.from_matrix(T[:3, :3]).as_euler("xyz")  # about fixed axes: roll, pitch, yaw
-    SubElement(element, "origin", xyz=position(T), rpy=numbers(np.where(np.abs(angles) < 1e-12, 0.0, angles)))
+    angles = Rotation.from_matrix(T_parent_child[:3, :3]).as_euler("xyz")  # about fixed axes: roll, pitch, yaw
+    SubElement(element, "origin", xyz=position(T_parent_child), rpy=numbers(np.where(np.abs(angles) < 1e-12, 0.0, angles)))
+    return element
 
 
 def _body_link(joint: Joint | None) -> Floats:
@@ -150,8 +148,3 @@ def _body_link(joint: Joint | None) -> Floats:
     if joint is not None:
         T[:3, 3] = joint.T_child_joint[:3, 3]
     return T
-
-
-def _bytes(robot: Element) -> bytes:
-    indent(robot)
-    return tostring(robot) + b"\n"

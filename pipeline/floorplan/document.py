@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from pipeline.entities.plan import Opening, OpeningKind, Plan, Room, Swing
 from pipeline.errors import ContentError, RefusedError
-from pipeline.floorplan.program.floor_program import FloorProgram
+from pipeline.floorplan.program.floor_program import FloorProgram, Model
 
 VERSION = 1
 MM = 3  # decimals
@@ -19,11 +19,7 @@ MM = 3  # decimals
 Point = tuple[float, float]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-class RoomDocument(_Strict):
+class RoomDocument(Model):
     """A room between its inner wall faces. A staircase is one room with its lowest `level` and all `levels`."""
 
     id: str
@@ -31,7 +27,7 @@ class RoomDocument(_Strict):
     role: str = ""
     functions: tuple[str, ...] = ()
     level: Annotated[int, Field(ge=0, description="storey, from 0")] = 0
-    levels: list[int] = []
+    levels: tuple[int, ...] = ()
     height: Annotated[float, Field(gt=0.0, description="floor to ceiling [m]")] = 2.7
     area: Annotated[float, Field(gt=0.0, description="area of the polygon [m2]")]
     polygon: Annotated[
@@ -40,7 +36,7 @@ class RoomDocument(_Strict):
     ]
 
 
-class SwingDocument(_Strict):
+class SwingDocument(Model):
     """How a leaf turns: into `room`, about end `hinge` of the segment, by up to `angle` [rad]."""
 
     room: str
@@ -48,7 +44,7 @@ class SwingDocument(_Strict):
     angle: Annotated[float, Field(gt=0.0, le=3.15)]
 
 
-class OpeningDocument(_Strict):
+class OpeningDocument(Model):
     """A hole in a wall; `rooms` are two, or one where the other side is outside."""
 
     id: str
@@ -62,7 +58,7 @@ class OpeningDocument(_Strict):
     level: Annotated[int, Field(ge=0)] = 0
 
 
-class RepairDocument(_Strict):
+class RepairDocument(Model):
     """Something that was changed in a plan of the user's own."""
 
     code: str
@@ -70,14 +66,14 @@ class RepairDocument(_Strict):
     text: str
 
 
-class AssumedDocument(_Strict):
+class AssumedDocument(Model):
     """Something that the request left open and a default filled in; in `program` it is marked `stated: false`."""
 
     field: str
     text: str
 
 
-class ClashDocument(_Strict):
+class ClashDocument(Model):
     """Words of the prompt, [start, end) in characters."""
 
     text: str
@@ -85,15 +81,15 @@ class ClashDocument(_Strict):
     end: int
 
 
-class RefusedDocument(_Strict):
+class RefusedDocument(Model):
     """Why there is no plan: `impossible` (the words or the program exclude it), `own_plan`, `unsound` (a plan of the user's own), `refused` (else)."""
 
     code: Literal["impossible", "own_plan", "unsound", "refused"]
     message: str
-    clashes: list[ClashDocument] = []
+    clashes: tuple[ClashDocument, ...] = ()
 
 
-class PlanDocument(_Strict):
+class PlanDocument(Model):
     """A floor plan, or why there is none: then `refused` is set and the lists are empty."""
 
     version: Literal[1] = 1
@@ -104,8 +100,8 @@ class PlanDocument(_Strict):
     outer_wall: Annotated[float | None, Field(description="thickness [m]")] = None
     storey_height: Annotated[float | None, Field(description="floor to floor [m]")] = None
     program: FloorProgram | None = None
-    repairs: list[RepairDocument] = []
-    assumed: list[AssumedDocument] = []
+    repairs: tuple[RepairDocument, ...] = ()
+    assumed: tuple[AssumedDocument, ...] = ()
     refused: RefusedDocument | None = None
 
 
@@ -171,9 +167,8 @@ def _round_points(points: np.ndarray[Any, np.dtype[np.float64]]) -> list[list[fl
 def refusal_json(error: RefusedError) -> dict[str, Any]:
     """Return the document that stands for a plan that was refused."""
     clashes = [{"text": c.text, "start": c.start, "end": c.end} for c in getattr(error, "clashes", ())]
-    refused = {"code": error.code, "message": str(error), "clashes": clashes}
-    empty = dict.fromkeys(("entrance", "inner_wall", "outer_wall", "storey_height", "program"))
-    return {"version": VERSION, "rooms": [], "openings": [], **empty, "repairs": [], "assumed": [], "refused": refused}
+    refused = RefusedDocument.model_validate({"code": error.code, "message": str(error), "clashes": clashes})
+    return PlanDocument(rooms=[], openings=[], entrance=None, refused=refused).model_dump(mode="json")
 
 
 def plan_from_json(document: object) -> Plan:
@@ -196,17 +191,9 @@ def plan_from_json(document: object) -> Plan:
     rooms = tuple(
         Room(r.id, r.type, np.array(r.polygon, dtype=float), r.level, r.height, r.role, functions=r.functions) for r in read.rooms
     )
+    swings = [None if o.swing is None else Swing(o.swing.room, o.swing.hinge, o.swing.angle) for o in read.openings]
     openings = tuple(
-        Opening(
-            o.id,
-            o.kind,
-            tuple(o.rooms),
-            np.array(o.segment, dtype=float),
-            o.height,
-            o.sill,
-            None if o.swing is None else Swing(o.swing.room, o.swing.hinge, o.swing.angle),
-            o.level,
-        )
-        for o in read.openings
+        Opening(o.id, o.kind, tuple(o.rooms), np.array(o.segment, dtype=float), o.height, o.sill, swing, o.level)
+        for o, swing in zip(read.openings, swings, strict=True)
     )
     return Plan(rooms, openings, read.entrance, read.inner_wall or 0.12, read.outer_wall or 0.24, read.storey_height or 3.0)

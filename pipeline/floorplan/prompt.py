@@ -19,10 +19,10 @@ def request(prompt: str, server: Server | None = None, *, strict: bool = False) 
 
     With `strict`, a prompt of which words were not understood, or ask for what nobody builds, is refused with them.
     """
-    return understood(_read(prompt, server), strict=strict)
+    return require_understood(_read(prompt, server), strict=strict)
 
 
-def understood(program: FloorProgram, *, strict: bool) -> FloorProgram:
+def require_understood(program: FloorProgram, *, strict: bool) -> FloorProgram:
     """Return a program; with `strict`, raises ImpossibleError where words of its prompt were not understood or ask for what nobody builds."""
     lost = {"unparsed": program.unparsed, "unbuilt": program.unbuilt} if strict else {}
     if any(lost.values()):

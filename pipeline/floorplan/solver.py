@@ -100,7 +100,7 @@ def _as_built(terms: list[Terms], plan: Plan, storeys: list[tuple[Storey, Labels
     areas = {r.room_id: r.area for r in plan.rooms}
     built = [(request.spec, np.array([areas[r.id] for r in request.rooms])) for request, _ in storeys]
     return Terms(*(float(sum(values)) for values in zip(*terms, strict=True)))._replace(
-        area=sum(area(room_areas, spec.target, spec.heed) for spec, room_areas in built),
+        area=sum(area(room_areas, spec.target, spec.area_weight) for spec, room_areas in built),
         useful_area=sum(useful_area(room_areas, spec.useful) for spec, room_areas in built),
     )
 

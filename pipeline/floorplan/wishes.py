@@ -11,7 +11,7 @@ from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, tokenize
 from pipeline.floorplan.program.consistency import ImpossibleError, check_furniture
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, RoomReq, Span
-from pipeline.floorplan.program.furniture import allot, spread
+from pipeline.floorplan.program.furniture import allot_pieces, spread
 
 
 def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:
@@ -33,7 +33,7 @@ def with_wishes(program: FloorProgram, prompt: str) -> FloorProgram:
         said = None
     mentions = _in_plan(program, said, prompt) if said is not None else []
     lost = {"unparsed": said.unparsed, "unbuilt": said.unbuilt} if said is not None else {"unparsed": tuple(_unknown(plain, prompt))}
-    wished = allot(spread(attach(program.model_copy(update=lost), claims, prompt, mentions)))
+    wished = allot_pieces(spread(attach(program.model_copy(update=lost), claims, prompt, mentions)))
     check_furniture(wished)
     return wished
 

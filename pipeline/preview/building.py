@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from pipeline import taxonomy
 from pipeline.entities.asset import Material
+from pipeline.entities.home import Placement
 from pipeline.entities.plan import Plan
 from pipeline.geometry.stairs import visible_steps
 from pipeline.geometry.walls import Shell, floor_pieces
@@ -24,7 +26,7 @@ PALENESS = 0.42  # floors are mixed with white, so that furniture stands out
 
 
 @dataclass(frozen=True, slots=True)
-class Soup:
+class Triangles:
     """Coloured triangles: `faces` (T, 3, 3) [m], `colours` (T, 3) sRGB, `items` (T,): 0 for the building."""
 
     faces: NDArray[np.float64]
@@ -32,7 +34,7 @@ class Soup:
     items: NDArray[np.int32]
 
 
-def building(plan: Plan, level: int, shell: Shell) -> Soup:
+def building(plan: Plan, level: int, shell: Shell) -> Triangles:
     """Return one storey's floors, thresholds, cut walls and windows as triangles; heights above the storey's floor."""
     paved = [
         _floor_triangles(piece, palette.floor(room.type)) for room in plan.rooms if room.level == level for piece in floor_pieces(room)
@@ -42,24 +44,28 @@ def building(plan: Plan, level: int, shell: Shell) -> Soup:
     for step in visible_steps(plan, level):
         grey = np.interp(step.top, (-plan.storey_height, 0.0, plan.storey_height), (0.45, 0.95, 1.05))
         odd = (parts + len(quads)) % 2
-        quads.append((step.polygon, scale_colour(pale(palette.STEP), float(grey) + STEP_GRAIN * odd), min(step.top, WALL_TOP - 0.1)))
+        quads.append((step.polygon, scale_colour(lighten(palette.STEP), float(grey) + STEP_GRAIN * odd), min(step.top, WALL_TOP - 0.1)))
     for cut in shell.cuts:
-        if cut.bottom > 0.05 or cut.opening.kind == "window":
-            quads.append((cut.quad, WINDOW, WALL_TOP))
-        else:
-            quads.append((cut.quad, pale(palette.threshold(plan, cut.opening)), 0.0))
+        walled = cut.bottom > 0.05 or cut.opening.kind == "window"
+        quads.append((cut.quad, WINDOW, WALL_TOP) if walled else (cut.quad, lighten(palette.threshold(plan, cut.opening)), 0.0))
     quads.extend((prism.polygon, WALL, WALL_TOP) for prism in shell.prisms if prism.kind == "wall")
     for ring, colour, z in quads:
         faces = fans(ring[None], z)
         paved.append((faces, np.tile(np.array(colour, np.float32), (len(faces), 1))))
     faces, colours = (np.concatenate(column) for column in zip(*paved, strict=True))
-    return Soup(faces, colours, np.zeros(len(faces), np.int32))
+    return Triangles(faces, colours, np.zeros(len(faces), np.int32))
+
+
+def is_hanging(placement: Placement) -> bool:
+    """Whether a thing hangs under the ceiling, which views from above leave off."""
+    known = taxonomy.load().categories.get(placement.category)
+    return known is not None and known.mount == "ceiling"
 
 
 def _floor_triangles(piece: NDArray[np.float64], material: Material) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
     """Return a piece of floor as triangles (T, 3, 3) and their colours (T, 3)."""
     rings, shades = pattern(piece, material)
-    colours = np.minimum(1.0, np.array(pale(material)) * (1 + GRAIN * shades[:, None])).astype(np.float32)
+    colours = np.minimum(1.0, np.array(lighten(material)) * (1 + GRAIN * shades[:, None])).astype(np.float32)
     return fans(rings, 0.0), np.repeat(colours, rings.shape[1] - 2, axis=0)
 
 
@@ -71,7 +77,7 @@ def fans(rings: NDArray[np.float64], height: float) -> NDArray[np.float64]:
     return points[:, corners].reshape(-1, 3, 3)
 
 
-def pale(material: Material) -> tuple[float, float, float]:
+def lighten(material: Material) -> tuple[float, float, float]:
     """Return the display colour of a floor material."""
     red, green, blue = ((1 - PALENESS) * c + PALENESS for c in palette.display(np.array(material.base_color)).tolist())
     return red, green, blue

@@ -21,7 +21,7 @@ class Guides:
 def denoise(image: NDArray[np.float32], guides: Guides, rounds: int = 4) -> NDArray[np.float32]:
     """Smooth linear `image` (H, W, 3) within surfaces. Colours are divided out first, so that their detail survives."""
     albedo = np.maximum(guides.albedo, 0.02)
-    light = calm(np.asarray(image / albedo, np.float32))
+    light = suppress_fireflies(np.asarray(image / albedo, np.float32))
     spread = 0.6
     for level in range(rounds):
         light = _pass(light, guides, 1 << level, spread)
@@ -29,7 +29,7 @@ def denoise(image: NDArray[np.float32], guides: Guides, rounds: int = 4) -> NDAr
     return np.where((guides.depth > 0)[..., None], light * albedo, image)
 
 
-def calm(image: NDArray[np.float32]) -> NDArray[np.float32]:
+def suppress_fireflies(image: NDArray[np.float32]) -> NDArray[np.float32]:
     """Lower single pixels that outshine their surroundings (fireflies) to twice the local median."""
     luminance = image.mean(axis=2)
     middle = ndimage.median_filter(luminance, 5, mode="nearest")

@@ -36,7 +36,7 @@ def draw_label(
 
     `busy` (H + 1, W + 1) is the summed-area table of furniture pixels.
 
-    Returns the label's box, or None where the room is too small for one.
+    Returns the label's box [pixels], or None where the room is too small for one.
     """
     draw = ImageDraw.Draw(image, "RGBA")
     name = room.type.replace("_", " ")

@@ -38,9 +38,9 @@ def draw_openings(draw: ImageDraw.ImageDraw, shell: Shell, project: Project, lin
         draw.polygon(project(leaf.outline(leaf.angle)), fill=LEAF)
 
 
-def swing_arc(leaf: Leaf, steps: int = 16) -> NDArray[np.float64]:
-    """Return the path (steps + 1, 2) [m] of the leaf's outer edge, from closed to open."""
-    angles = np.linspace(0, leaf.angle, steps + 1)
+def swing_arc(leaf: Leaf) -> NDArray[np.float64]:
+    """Return the path (17, 2) [m] of the leaf's outer edge, from closed to open."""
+    angles = np.linspace(0, leaf.angle, 17)
     return leaf.hinge + leaf.width * (np.cos(angles)[:, None] * leaf.along + np.sin(angles)[:, None] * leaf.normal)
 
 
@@ -79,7 +79,5 @@ def _arrow(draw: ImageDraw.ImageDraw, cut: Cut, shell: Shell, project: Project) 
         return
     middle = cut.opening.segment.mean(axis=0) - 0.32 * inward
     across = np.array([-inward[1], inward[0]])
-    draw.polygon(
-        project(np.array([middle + 0.16 * inward, middle - 0.12 * inward + 0.16 * across, middle - 0.12 * inward - 0.16 * across])),
-        fill=ENTRANCE,
-    )
+    corners = [middle + 0.16 * inward, middle - 0.12 * inward + 0.16 * across, middle - 0.12 * inward - 0.16 * across]
+    draw.polygon(project(np.array(corners)), fill=ENTRANCE)

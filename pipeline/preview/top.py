@@ -10,12 +10,11 @@ from PIL import Image, ImageDraw
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home, Placement
 from pipeline.geometry.walls import Shell, levels, shell
-from pipeline.preview.building import building
+from pipeline.preview.building import building, is_hanging
 from pipeline.preview.labels import SMALL, draw_label, summed_area_table
 from pipeline.preview.symbols import draw_openings, draw_reach
-from pipeline.rendering.above import draw_roof
+from pipeline.rendering.above import draw_from_above
 from pipeline.rendering.raster import Frame, View, darken_edges, render, top_down
-from pipeline.taxonomy import load
 
 MARGIN = 0.45  # around the outer walls [m]
 BACKGROUND = (0.955, 0.955, 0.945)
@@ -33,18 +32,15 @@ def top_view(home: Home, assets: Mapping[str, Asset], size: int = 1024, *, reach
     width, height = (max(16, round(s * scale)) for s in (high - low))
     image = Image.new("RGB", (width * len(shells), height))
     for i, (level, built) in enumerate(zip(levels(home.plan), shells, strict=True)):
-        image.paste(
-            _storey(home, assets, level, built, top_down(low, high, SAMPLES * width, SAMPLES * height), reaches=reaches), (i * width, 0)
-        )
+        view = top_down(low, high, SAMPLES * width, SAMPLES * height)
+        image.paste(_storey(home, assets, level, built, view, reaches=reaches), (i * width, 0))
     return image
 
 
 def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, view: View, *, reaches: bool) -> Image.Image:
     ids = {room.room_id for room in home.plan.rooms if room.level == level}
     placed = [p for p in home.placements if p.room_id in ids and p.asset_id in assets]
-    categories = load().categories
-    hanging = [p for p in placed if p.category in categories and categories[p.category].mount == "ceiling"]
-    standing = [p for p in placed if p.category not in categories or categories[p.category].mount != "ceiling"]
+    standing = [p for p in placed if not is_hanging(p)]
     image, depth, item = _solids(home, assets, level, built, view, standing)
     draw = ImageDraw.Draw(image)
 
@@ -56,7 +52,7 @@ def _storey(home: Home, assets: Mapping[str, Asset], level: int, built: Shell, v
     draw_openings(draw, built, project, line)
     for placement in standing if reaches else ():
         draw_reach(draw, placement, assets[placement.asset_id], project, line)
-    for placement in hanging:
+    for placement in filter(is_hanging, placed):
         draw.line(project(placement.footprint()[[0, 1, 2, 3, 0]]), fill=(150, 150, 150), width=line)
     image = _shade(image.reduce(SAMPLES), depth, item)
     size = max(9, round(0.26 * view.scale / SAMPLES))
@@ -83,7 +79,7 @@ def _solids(
         band = view.rows(top, bottom)
         frame = render(band, ground.faces, ground.colours, ground.items, BACKGROUND)
         for number, p in enumerate(standing, 1):
-            draw_roof(frame, band, assets[p.asset_id], p.position - (0.0, 0.0, elevation), p.yaw, p.scale, number)
+            draw_from_above(frame, band, assets[p.asset_id], p.position - (0.0, 0.0, elevation), p.yaw, p.scale, number)
         image.paste(Image.fromarray(frame.colour), (0, top))
         depths.append(frame.depth[::SAMPLES, ::SAMPLES].copy())
         items.append(frame.item[::SAMPLES, ::SAMPLES].copy())

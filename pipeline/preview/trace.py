@@ -60,9 +60,7 @@ def path_trace(
             "type": "perspective",
             "fov": FIELD_OF_VIEW,
             "fov_axis": "larger",
-            "to_world": mi.ScalarTransform4f().look_at(
-                origin=camera.eye.tolist(), target=(camera.eye - camera.back).tolist(), up=[0, 0, 1]
-            ),
+            "to_world": mi.ScalarTransform4f().look_at(camera.eye.tolist(), (camera.eye - camera.back).tolist(), [0, 0, 1]),
             "film": {"type": "hdrfilm", "width": fine[0], "height": fine[1], "rfilter": {"type": "box"}, "pixel_format": "rgb"},
             "sampler": {"type": "independent", "sample_count": max(1, round(spp / FINER**2))},
         },
@@ -81,9 +79,8 @@ def mitsuba() -> ModuleType:
     try:
         import mitsuba as mi
     except ImportError as error:
-        raise UsageError(
-            "path-traced views need Mitsuba, which is not installed", "pip install mitsuba (or the extra: pip install '.[render]')"
-        ) from error
+        remedy = "pip install mitsuba (or the extra: pip install '.[render]')"
+        raise UsageError("path-traced views need Mitsuba, which is not installed", remedy) from error
     mi.set_log_level(mi.LogLevel.Error)
     mi.set_variant("scalar_rgb")  # the llvm variants abort with some systems' LLVM, the cuda ones want a GPU
     return mi
@@ -186,14 +183,8 @@ def _surface(batch: Batch) -> dict[str, Any]:
     colour = {"type": "mesh_attribute", "name": "face_color"}
     if batch.roughness >= 0.55 and batch.metallic < 0.5:
         return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": colour}}
-    inner = {
-        "type": "principled",
-        "base_color": colour,
-        "roughness": max(0.08, batch.roughness),
-        "metallic": batch.metallic,
-        "specular": 0.4,
-    }
-    return {"type": "twosided", "bsdf": inner}
+    gloss = {"roughness": max(0.08, batch.roughness), "metallic": batch.metallic, "specular": 0.4}
+    return {"type": "twosided", "bsdf": {"type": "principled", "base_color": colour, **gloss}}
 
 
 def save(image: NDArray[np.float32], path: Path, size: tuple[int, int]) -> None:

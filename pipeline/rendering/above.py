@@ -11,15 +11,15 @@ from pipeline.geometry.compiled import borrowing
 from pipeline.geometry.memo import cached_on_asset
 from pipeline.rendering.palette import display
 from pipeline.rendering.pose import asset_triangles
-from pipeline.rendering.raster import AMBIENT, LIGHT, Frame, View, fill_triangle, render, top_down
-from pipeline.rendering.texture import face_colours
+from pipeline.rendering.raster import AMBIENT, LIGHT, Buffers, Frame, View, fill_triangle, render, top_down
+from pipeline.rendering.surface_colour import face_colours
 
 FINENESS, MOST = 250.0, 640  # pixels per metre, and pixels a side, at which it is tried what is seen
 TO_LIGHT = LIGHT / np.linalg.norm(LIGHT)
 
 
 @dataclass(frozen=True, slots=True)
-class Roof:
+class VisibleTop:
     """The triangles (T, 3, 3) [m, object frame] of an asset that are seen from above, and their display colours (T, 3)."""
 
     faces: NDArray[np.float32]
@@ -27,7 +27,7 @@ class Roof:
 
 
 @cached_on_asset
-def roof(asset: Asset) -> Roof:
+def visible_top(asset: Asset) -> VisibleTop:
     """Return what is seen of an asset with all joints at 0."""
     faces, _ = asset_triangles(asset)
     visible = np.zeros(len(faces), np.bool_)
@@ -36,19 +36,18 @@ def roof(asset: Asset) -> Roof:
         width, height = (int(np.clip(math.ceil(FINENESS * side), 8, MOST)) for side in high - low)
         items = render(top_down(low, high, width, height), faces, np.zeros((len(faces), 3), np.float32)).item
         visible[items[items >= 0]] = True
-    return Roof(faces[visible].astype(np.float32), display(face_colours(asset, visible)))
+    return VisibleTop(faces[visible].astype(np.float32), display(face_colours(asset, visible)))
 
 
-def draw_roof(
+def draw_from_above(
     frame: Frame, view: View, asset: Asset, position: NDArray[np.float64], yaw: float, scale: NDArray[np.float64], item: int
 ) -> None:
     """Draw an asset into a frame that looks down at `position` (3,) [m], shaded as `render` does; `item` labels its pixels."""
-    top = roof(asset)
+    top = visible_top(asset)
     pose = np.array([*position, math.cos(yaw), math.sin(yaw)])
     offset = np.array([view.width / 2, view.height / 2]) - view.scale * view.centre[:2] * (1.0, -1.0)
     scratch = np.empty((3, 3)), np.empty((3, 3), np.float32), np.empty(3, np.uint8)
-    drawn = frame.colour, frame.depth, frame.item
-    _draw(top.faces, top.colours, pose, scale, view.scale, offset, item, TO_LIGHT, AMBIENT, scratch, drawn)
+    _draw(top.faces, top.colours, pose, scale, view.scale, offset, item, TO_LIGHT, AMBIENT, scratch, frame.buffers)
 
 
 @borrowing
@@ -63,15 +62,14 @@ def _draw(
     light: NDArray[np.float64],
     ambient: float,
     scratch: tuple[NDArray[np.float64], NDArray[np.float32], NDArray[np.uint8]],
-    drawn: tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.int32]],
+    buffers: Buffers,
 ) -> None:
     """Scale by `size`, turn and move by `pose` (x, y, z, cos, sin), shade and fill triangles.
 
     A point's pixel is `offset` + `scale` times its (x, -y) [m]. `scratch` has a triangle's corners in the world and
-    in the picture, (3, 3) each, and its colour (3,); `drawn` has what `Frame` has.
+    in the picture, (3, 3) each, and its colour (3,).
     """
     world, corners, paint = scratch
-    colour, depth, items = drawn
     for t in range(faces.shape[0]):
         for k in range(3):
             x, y = faces[t, k, 0] * size[0], faces[t, k, 1] * size[1]
@@ -88,4 +86,4 @@ def _draw(
         lambert = min(max(-lambert if nz < 0 else lambert, 0.0), 1.0)  # the side that is seen
         for k in range(3):
             paint[k] = np.uint8(min(max(colours[t, k] * (ambient + (1.0 - ambient) * lambert) * 255.0 + 0.5, 0.0), 255.0))
-        fill_triangle(corners, paint, item, colour, depth, items)
+        fill_triangle(corners, paint, item, buffers)

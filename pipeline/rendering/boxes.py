@@ -41,5 +41,4 @@ def solid_link(name: str, visuals: tuple[Mesh, ...], colliders: tuple[Mesh, ...]
 
 def triangles(mesh: Mesh) -> NDArray[np.float64]:
     """Return the mesh's triangles (F, 3, 3) [m]."""
-    out: NDArray[np.float64] = mesh.vertices.astype(np.float64)[mesh.faces]
-    return out
+    return np.asarray(mesh.vertices.astype(np.float64)[mesh.faces])

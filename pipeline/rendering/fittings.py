@@ -62,8 +62,13 @@ def door_of(size: Size, *, entrance: bool) -> Asset:
 
 def window(cut: Cut) -> tuple[Asset, NDArray[np.float64], float]:
     """Make the window of an opening: frame, mullion, glass; static, to look at: the wall about it collides. Position and yaw as for a door."""
+    return window_of(window_size(cut)), *window_pose(cut)
+
+
+def window_pose(cut: Cut) -> tuple[NDArray[np.float64], float]:
+    """Return where a window begins, on its wall's centre line (2,) [m], and its yaw [rad]."""
     a, b = (cut.quad[0] + cut.quad[3]) / 2, (cut.quad[1] + cut.quad[2]) / 2
-    return window_of(window_size(cut)), a, float(np.arctan2(*(b - a)[::-1]))
+    return a, float(np.arctan2(*(b - a)[::-1]))
 
 
 def window_size(cut: Cut) -> Size:

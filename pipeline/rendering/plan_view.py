@@ -40,9 +40,9 @@ def plan_view(room: Arrangement, size: int = SIZE) -> NDArray[np.uint8]:
     view = top_down(middle - half, middle + half, FINE * size, FINE * size)
     known, ceiling = colours(), {c.name for c in taxonomy.load().categories.values() if c.mount == "ceiling"}
     shapes, paints = [_fan(room.polygon, 0.0)], [np.tile(FLOOR, (len(room.polygon) - 2, 1))]
-    for gap in room.openings:
-        shapes.append(_quad(_band(gap.segment), 0.01))
-        paints.append(np.tile(WINDOW if gap.kind == "window" else DOOR, (2, 1)))
+    for opening in room.openings:
+        shapes.append(_quad(_band(opening.segment), 0.01))
+        paints.append(np.tile(WINDOW if opening.kind == "window" else DOOR, (2, 1)))
     for k, name in enumerate(room.categories):
         if name in known:
             scale = HANGING if name in ceiling else 1.0
@@ -60,8 +60,7 @@ def plan_view(room: Arrangement, size: int = SIZE) -> NDArray[np.uint8]:
 
 def _place_corners(corners: NDArray[np.float64], place: NDArray[np.float64], yaw: float) -> NDArray[np.float64]:
     c, s = np.cos(yaw), np.sin(yaw)
-    moved: NDArray[np.float64] = corners @ np.array([[c, s], [-s, c]]) + place
-    return moved
+    return np.asarray(corners @ np.array([[c, s], [-s, c]]) + place)
 
 
 def _band(segment: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -30,8 +30,7 @@ def placement_transform(position: NDArray[np.float64], yaw: float, scale: NDArra
 def asset_triangles(asset: Asset, values: Mapping[str, float] | None = None) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Return all visual triangles (T, 3, 3) [m, object frame] and the material of each (T,)."""
     transforms = link_transforms(asset, np.array([(values or {}).get(joint.name, 0.0) for joint in asset.joints]))
-    faces: list[NDArray[np.float64]] = []
-    materials: list[NDArray[np.int32]] = []
+    faces, materials = [np.zeros((0, 3, 3))], [np.zeros(0, np.int32)]
     for link, T in zip(asset.links, transforms, strict=True):
         for mesh in link.visuals:
             moved = triangles(mesh)
@@ -39,6 +38,4 @@ def asset_triangles(asset: Asset, values: Mapping[str, float] | None = None) -> 
                 moved = moved @ T[:3, :3].T + T[:3, 3]
             faces.append(moved)
             materials.append(np.full(len(moved), mesh.material, np.int32))
-    if not faces:
-        return np.zeros((0, 3, 3)), np.zeros(0, np.int32)
     return np.concatenate(faces), np.concatenate(materials)

@@ -16,6 +16,9 @@ from pipeline.geometry.compiled import borrowing, compiled
 
 LIGHT = np.array([-0.35, -0.45, 0.82])  # towards the light, world frame; from the front left, high up
 AMBIENT = 0.45
+MARGIN = 0.06  # around what an oblique view shows, as a share of the image
+
+Buffers = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.int32]]  # a frame's colour, depth and item
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +57,11 @@ class Frame:
     depth: NDArray[np.float32]
     item: NDArray[np.int32]
 
+    @property
+    def buffers(self) -> Buffers:
+        """All three, as `fill_triangle` takes them."""
+        return self.colour, self.depth, self.item
+
 
 def top_down(low: NDArray[np.float64], high: NDArray[np.float64], width: int, height: int) -> View:
     """Look straight down at the plan rectangle low..high (2,), +y up in the image."""
@@ -63,7 +71,7 @@ def top_down(low: NDArray[np.float64], high: NDArray[np.float64], width: int, he
     return View(axes, centre, float(min(width / span[0], height / span[1])), width, height)
 
 
-def oblique(points: NDArray[np.float64], azimuth: float, elevation: float, size: int, margin: float = 0.06) -> View:
+def oblique(points: NDArray[np.float64], azimuth: float, elevation: float, size: int) -> View:
     """Look at `points` (N, 3) so that they fill the image: from `azimuth` about +Z (0: from -Y), `elevation` above the floor [rad]."""
     ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
     right = np.array([ca, sa, 0.0])
@@ -71,7 +79,7 @@ def oblique(points: NDArray[np.float64], azimuth: float, elevation: float, size:
     axes = np.array([right, np.cross(right, back), back])
     local = points @ axes.T
     low, high = local.min(axis=0), local.max(axis=0)
-    scale = size * (1 - 2 * margin) / max(float((high - low)[:2].max()), 1e-3)
+    scale = size * (1 - 2 * MARGIN) / max(float((high - low)[:2].max()), 1e-3)
     return View(axes, axes.T @ ((low + high) / 2), scale, size, size)
 
 
@@ -107,7 +115,7 @@ def fill(
     frame = Frame(_plain(background, width, height), np.full((height, width), -np.inf, np.float32), np.full((height, width), -1, np.int32))
     if len(projected):
         labels = np.arange(len(projected), dtype=np.int32) if items is None else items.astype(np.int32)
-        _fill(np.ascontiguousarray(projected), to_bytes(colours.astype(np.float32)), labels, frame.colour, frame.depth, frame.item)
+        _fill(np.ascontiguousarray(projected), to_bytes(colours.astype(np.float32)), labels, frame.buffers)
     return frame
 
 
@@ -132,12 +140,8 @@ def darken_edges(frame: Frame, radius: int, strength: float, reach: float = 0.6,
     low = filled[::2, ::2]  # blurred at half the resolution: it is smooth, and four times cheaper
     for _ in range(2):  # two box passes come close to a Gaussian
         low = ndimage.uniform_filter(low, radius + 1, mode="nearest")
-    everywhere = ground is not None
-    return Frame(
-        _darken_pixels(frame.colour, frame.depth, filled, low, np.float32(strength / reach), np.float32(strength), everywhere),
-        frame.depth,
-        frame.item,
-    )
+    slope, most = np.float32(strength / reach), np.float32(strength)
+    return replace(frame, colour=_darken_pixels(frame.colour, frame.depth, filled, low, slope, most, ground is not None))
 
 
 def shrink(frame: Frame, factor: int) -> Frame:
@@ -158,29 +162,16 @@ def _plain(colour: tuple[float, float, float], width: int, height: int) -> NDArr
 
 
 @borrowing
-def _fill(
-    projected: NDArray[np.float32],
-    colours: NDArray[np.uint8],
-    items: NDArray[np.int32],
-    colour: NDArray[np.uint8],
-    depth: NDArray[np.float32],
-    item: NDArray[np.int32],
-) -> None:
+def _fill(projected: NDArray[np.float32], colours: NDArray[np.uint8], items: NDArray[np.int32], buffers: Buffers) -> None:
     """Scan-convert triangles (T, 3, 3) of (u, v, depth) in their order."""
     for t in range(projected.shape[0]):
-        fill_triangle(projected[t], colours[t], items[t], colour, depth, item)
+        fill_triangle(projected[t], colours[t], items[t], buffers)
 
 
 @borrowing
-def fill_triangle(
-    corners: NDArray[np.float32],
-    paint: NDArray[np.uint8],
-    label: int,
-    colour: NDArray[np.uint8],
-    depth: NDArray[np.float32],
-    item: NDArray[np.int32],
-) -> None:
+def fill_triangle(corners: NDArray[np.float32], paint: NDArray[np.uint8], label: int, buffers: Buffers) -> None:
     """Scan-convert one triangle (3, 3) of (u, v, depth) in `paint` (3,); a pixel counts when its centre is inside."""
+    colour, depth, item = buffers
     height, width = depth.shape
     x0, y0, z0 = float(corners[0, 0]), float(corners[0, 1]), float(corners[0, 2])
     x1, y1, z1 = float(corners[1, 0]), float(corners[1, 1]), float(corners[1, 2])
@@ -215,9 +206,8 @@ def fill_triangle(
             if z > depth[row, column]:
                 depth[row, column] = z
                 item[row, column] = label
-                colour[row, column, 0] = paint[0]
-                colour[row, column, 1] = paint[1]
-                colour[row, column, 2] = paint[2]
+                for channel in range(3):
+                    colour[row, column, channel] = paint[channel]
 
 
 @compiled

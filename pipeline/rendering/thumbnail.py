@@ -9,7 +9,7 @@ from pipeline.entities.asset import Asset
 from pipeline.rendering.palette import display
 from pipeline.rendering.pose import asset_triangles, open_joint_values
 from pipeline.rendering.raster import darken_edges, oblique, render, shrink
-from pipeline.rendering.texture import face_colours
+from pipeline.rendering.surface_colour import face_colours
 
 BACKGROUND = (0.96, 0.96, 0.95)
 

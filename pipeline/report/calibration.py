@@ -24,9 +24,7 @@ def calibration_section(figures: Json, pictures: Sequence[Picture]) -> Section:
     lines = [entry for group in (*GROUPS, "sizes") for entry in figures[group].values()]
     met = sum(entry["ok"] for entry in lines)
     lead = f"{figures['houses']} houses, {figures['rooms']} rooms, counted as they were written: {met} of {len(lines)} figures lie where 3D-FRONT's do."
-    tables = [
-        TableView(caption, HEADER, [_row(name, entry) for name, entry in figures[group].items()]) for group, caption in GROUPS.items()
-    ]
+    tables = [TableView(caption, HEADER, [_row(*named) for named in figures[group].items()]) for group, caption in GROUPS.items()]
     tables.append(TableView("Sizes of models: ours over the reference's", SIZES, sizes(figures["sizes"])))
     return Section("The embedded corpus beside 3D-FRONT", [lead], tables, pictures)
 

@@ -27,7 +27,6 @@ def realism_section(table: Json, coherence: Json, pictures: Sequence[Picture]) -
         "Harms are done to real rooms: a figure that does not see each of them (SCA of .8 and more, FID and KID at least twice those of training rooms) is void.",
         "Learnt relations are those that the training rooms show most clearly; no list of them is written by hand.",
     ]
-    views = [view for name, figures in table["views"].items() for view in _views(name, figures)]
     tables = [
         _rates("Share of cases in which it holds", relations["rates"]),
         _rates("The strongest learnt relations: share of cases that stand in one of their modes", relations["learnt"]),
@@ -37,7 +36,7 @@ def realism_section(table: Json, coherence: Json, pictures: Sequence[Picture]) -
             coherence,
         ),
         _forest(table["layout"]),
-        *views,
+        *(_views(name, figures) for name, figures in table["views"].items()),
         _novelty(table["novelty"]),
     ]
     return Section("Made rooms beside real ones", text, tables, pictures, wide=True)
@@ -49,12 +48,11 @@ def _title(name: str) -> str:
 
 def _rates(caption: str, figures: Json) -> TableView:
     sets = list(next(iter(figures.values()), {}))
-    rows = [[name.replace("_", " "), *(_format_share(row[key]) for key in sets), str(row["real"]["n"])] for name, row in figures.items()]
+    rows = [
+        [name.replace("_", " "), *(share(row[key]) if row[key]["n"] else "-" for key in sets), str(row["real"]["n"])]
+        for name, row in figures.items()
+    ]
     return TableView(caption, ("", *map(_title, sets), "real cases"), rows)
-
-
-def _format_share(value: Json) -> str:
-    return share(value) if value["n"] else "-"
 
 
 def _forest(figures: Json) -> TableView:
@@ -64,7 +62,7 @@ def _forest(figures: Json) -> TableView:
     return TableView(_with_warning(caption, figures), ("rooms", "accuracy", "rooms of both"), rows)
 
 
-def _views(name: str, figures: Json) -> list[TableView]:
+def _views(name: str, figures: Json) -> TableView:
     rows = [
         [
             _title(key) if k == 0 else f"harm: {key}",
@@ -77,7 +75,7 @@ def _views(name: str, figures: Json) -> list[TableView]:
         for key, v in part.items()
     ]
     caption = f"Plan views against those of real rooms, features of {name}."
-    return [TableView(_with_warning(caption, figures), ("rooms", "FID", "of training rooms", "KID", "SCA"), rows)]
+    return TableView(_with_warning(caption, figures), ("rooms", "FID", "of training rooms", "KID", "SCA"), rows)
 
 
 def _with_warning(caption: str, figures: Json) -> str:
@@ -86,17 +84,9 @@ def _with_warning(caption: str, figures: Json) -> str:
 
 
 def _novelty(figures: Json) -> TableView:
-    rows = [
-        [
-            _title(name),
-            f"{v['made'].get('median', 0):.3f}",
-            f"{v['held_out'].get('median', 0):.3f}",
-            f"{v['statistic']:.3f}",
-            f"{v['p']:.3f}",
-            str(v["copies"]),
-            str(v["copies_held_out"]),
-        ]
-        for name, v in figures.items()
-    ]
+    rows = []
+    for name, v in figures.items():
+        distances = (v["made"].get("median", 0), v["held_out"].get("median", 0), v["statistic"], v["p"])
+        rows.append([_title(name), *(f"{d:.3f}" for d in distances), str(v["copies"]), str(v["copies_held_out"])])
     header = ("rooms", "median", "of held-out rooms", "KS statistic", "p", "copies", "copies among held-out rooms")
     return TableView("Distance to the nearest training room [m a thing]", header, rows)

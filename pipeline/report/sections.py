@@ -44,36 +44,30 @@ def walkable_section(table: Json, picture: Picture) -> Section:
     ]
     kinds = ("without", "first attempts", "rooms that ship")
     header = ("tau", *(f"{meaning}: {kind}" for meaning in ("free", "paper") for kind in kinds), "share that ships")
-    free = "Free is connected floor that the robot covers, over all floor; this one is controlled."
-    paper = "Paper is (A_room - sum of footprints) / A_room, as printed."
-    text = [free, paper]
+    text = [
+        "Free is connected floor that the robot covers, over all floor; this one is controlled.",
+        "Paper is (A_room - sum of footprints) / A_room, as printed.",
+    ]
     return Section("Walkable area", text, [TableView("SR(tau) over rooms that ship, with 95 % intervals", header, rows)], [picture])
 
 
-ARTICULATION = (
-    ("R_acoll, boxes + depth/3", lambda f: share(f["r_acoll_heuristic"]["rooms"])),
-    ("R_acoll, joints' sweeps", lambda f: share(f["r_acoll_joints"]["rooms"])),
-    ("blocked joints, exact", lambda f: share(f["swept"]["joints"])),
-    ("R_reach", lambda f: share(f["r_reach"])),
-    ("openable in reach", lambda f: share(f["reach"]["objects"])),
-    ("Col_obj, boxes", lambda f: share(f["collision"]["bbox"]["col_obj"])),
-    ("Col_obj, exact", lambda f: share(f["collision"]["prism"]["col_obj"])),
-    ("openable per room", lambda f: share(f["openable"]["shipped"])),
-    ("objects per room", lambda f: share(f["openable"]["objects"])),
+ARTICULATION = (  # the figure, where it lies, and the paper's, without and with guidance
+    ("R_acoll, boxes + depth/3", lambda f: f["r_acoll_heuristic"]["rooms"], "0.191 / 0.109"),
+    ("R_acoll, joints' sweeps", lambda f: f["r_acoll_joints"]["rooms"], "-"),
+    ("blocked joints, exact", lambda f: f["swept"]["joints"], "-"),
+    ("R_reach", lambda f: f["r_reach"], "0.742 / 0.808"),
+    ("openable in reach", lambda f: f["reach"]["objects"], "-"),
+    ("Col_obj, boxes", lambda f: f["collision"]["bbox"]["col_obj"], "0.279 / 0.267"),
+    ("Col_obj, exact", lambda f: f["collision"]["prism"]["col_obj"], "-"),
+    ("openable per room", lambda f: f["openable"]["shipped"], "-"),
+    ("objects per room", lambda f: f["openable"]["objects"], "-"),
 )
 
 
 def articulation_section(table: Json, ablation: Json) -> Section:
     """Return articulation with and without guidance, and the ablation."""
-    names = list(table)
-    rows = [[label, *(show(table[name]) for name in names)] for label, show in ARTICULATION]
-    rows[0].append("0.191 / 0.109")
-    rows[1].append("-")
-    rows[2].append("-")
-    rows[3].append("0.742 / 0.808")
-    for row in rows[4:]:
-        row.append("0.279 / 0.267" if row[0] == "Col_obj, boxes" else "-")
-    titles = ("", *(name.replace("_", ", ") for name in names), "the paper, without / with")
+    rows = [[label, *(share(figure(figures)) for figures in table.values()), paper] for label, figure, paper in ARTICULATION]
+    titles = ("", *(name.replace("_", ", ") for name in table), "the paper, without / with")
     cut = [
         [name, share(r["col_obj"]), share(r["r_walkable"]["paper"]), share(r["r_walkable"]["free"]), share(r["r_reach"])]
         for name, r in ablation.items()

@@ -13,7 +13,7 @@ from typing import Any
 from pipeline.errors import ContentError, UsageError
 from pipeline.manifest import text_of
 from pipeline.shards.commits import Commit, parse_commit, read_commit
-from pipeline.shards.disk import put
+from pipeline.shards.disk import write_durably
 from pipeline.shards.header import Header, parse_header
 from pipeline.shards.layout import ASSETS, HEADER, commit_path, shard_name
 from pipeline.shards.seal import SEAL
@@ -95,7 +95,7 @@ class Address:
         for path in commit.files:
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (place / path).replace(folder / path)
-        put(folder / commit_path(name), text_of(commit.to_json()), staging)
+        write_durably(folder / commit_path(name), text_of(commit.to_json()), staging)
 
     def _commit(self, name: str) -> Commit | None:
         path = self._at(commit_path(name))
@@ -115,6 +115,5 @@ class Address:
             raise
         except Exception as error:  # each kind of place has errors of its own
             lines = str(error).strip().splitlines() or [type(error).__name__]
-            raise ContentError(
-                f"{self.name} cannot be read or written ({lines[0][:200]})", "mend that and start it again: it resumes"
-            ) from error
+            message = f"{self.name} cannot be read or written ({lines[0][:200]})"
+            raise ContentError(message, "mend that and start it again: it resumes") from error

@@ -162,18 +162,14 @@ def _read(path: Path) -> str:
 
 def _machine() -> dict[str, str]:
     """Return the names of this machine, of its kernel's boot and of the table of processes that this one can see; "" for what is not told."""
-    return {
-        "host": platform.node() + _read_or_empty(lambda: Path("/etc/machine-id").read_text().strip()),
-        "boot": _read_or_empty(lambda: Path("/proc/sys/kernel/random/boot_id").read_text().strip()),
-        "processes": _read_or_empty(lambda: str(Path("/proc/self/ns/pid").readlink())),
-    }
-
-
-def _read_or_empty(read: Callable[[], str]) -> str:
-    try:
-        return read()
-    except OSError:
-        return ""
+    told = {"host": platform.node(), "boot": "", "processes": ""}
+    with suppress(OSError):
+        told["host"] += Path("/etc/machine-id").read_text().strip()
+    with suppress(OSError):
+        told["boot"] = Path("/proc/sys/kernel/random/boot_id").read_text().strip()
+    with suppress(OSError):
+        told["processes"] = str(Path("/proc/self/ns/pid").readlink())
+    return told
 
 
 def _birth(pid: int) -> str:

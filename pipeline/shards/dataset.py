@@ -21,22 +21,10 @@ from pipeline.manifest import text_of
 from pipeline.shards.address import Address
 from pipeline.shards.claims import Claims
 from pipeline.shards.commits import Commit, read_commit, record
-from pipeline.shards.disk import link, put, sync
+from pipeline.shards.disk import link, sync, write_durably
 from pipeline.shards.header import Header, read_header
-from pipeline.shards.layout import (
-    ASSETS,
-    CLAIMS,
-    COMMITS,
-    HEADER,
-    PARTS,
-    PASSING,
-    STAGING,
-    TABLES,
-    commit_path,
-    shard_name,
-    table_path,
-)
-from pipeline.shards.library import AssetSource, adopt, settle
+from pipeline.shards.layout import ASSETS, CLAIMS, COMMITS, HEADER, PARTS, PASSING, STAGING, TABLES, commit_path, shard_name, table_path
+from pipeline.shards.library import AssetSource, add_assets, commit_library
 from pipeline.shards.parts import FILES, HomeContent, Part, join, part_place, parts_there, write_part
 from pipeline.shards.seal import SEAL, is_sealed, seal, vouches
 from pipeline.tables import parquet
@@ -106,7 +94,7 @@ def open_or_create(
                 address.begin(folder, header, dataset.staging)
         yield dataset
         if not dataset.missing() and read_header(folder) == header and not is_sealed(folder, header):
-            settle(folder, source, dataset.staging, assets_of_all(dataset))
+            commit_library(folder, source, dataset.staging, assets_of_all(dataset))
             seal(folder, header, dataset.staging)
         if address and is_sealed(folder, header):
             address.send_all(folder, header)
@@ -214,7 +202,7 @@ def _commit(dataset: Dataset, number: int) -> None:
         path.parent.mkdir(parents=True)
         pq.write_table(data, path, compression="zstd", store_schema=True)
         if table == "objects":
-            adopt(folder, dataset.source, dataset.staging, set(data["asset_id"].to_pylist()))
+            add_assets(folder, dataset.source, dataset.staging, set(data["asset_id"].to_pylist()))
     known = {}
     for part, part_commit in zip(parts, brought, strict=True):
         for inside, entry in part_commit.files.items():
@@ -232,7 +220,7 @@ def _commit(dataset: Dataset, number: int) -> None:
         (staging / file).replace(folder / file)
     for named in sorted({p for place in places for p in (place, *place.parents) if p.is_relative_to(folder)}, reverse=True):
         sync(named)  # a folder before the one that names it
-    put(folder / commit_path(name), text_of(commit.to_json()), dataset.staging)
+    write_durably(folder / commit_path(name), text_of(commit.to_json()), dataset.staging)
     shutil.rmtree(staging)
 
 
@@ -275,7 +263,7 @@ def _prepare(dataset: Dataset, *, discard: bool) -> None:
     text = text_of(header.to_json())
     if not (folder / HEADER).exists() or (folder / HEADER).read_bytes() != text:
         (folder / commit_path(SEAL)).unlink(missing_ok=True)
-        put(folder / HEADER, text, dataset.staging)
+        write_durably(folder / HEADER, text, dataset.staging)
     for number in dataset.missing():
         if (folder / commit_path(shard_name(number))).exists():
             _forget(folder, shard_name(number))

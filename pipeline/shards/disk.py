@@ -22,7 +22,7 @@ def link(source: str | Path, target: str | Path) -> None:
         shutil.copyfile(source, target)
 
 
-def put(path: Path, data: bytes, staging: Path) -> None:
+def write_durably(path: Path, data: bytes, staging: Path) -> None:
     """Write a file whole or not at all, by way of a folder that nobody else writes in; it is on disk, and so is its name."""
     staging.mkdir(parents=True, exist_ok=True)
     path.parent.mkdir(exist_ok=True)

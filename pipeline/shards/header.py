@@ -106,18 +106,11 @@ def parse_header(text: bytes, path: Path | str) -> Header:
         raise ContentError(f"{path} does not describe a dataset of format {FORMAT}", REMEDY)
     header = Header(**data)
     if header.schema_version != SCHEMA_VERSION:
-        raise ContentError(
-            f"{path} is of tables of version {header.schema_version}, and this release of sfgen reads {SCHEMA_VERSION}",
-            "use the release that made it",
-        )
+        versions = f"version {header.schema_version}, and this release of sfgen reads {SCHEMA_VERSION}"
+        raise ContentError(f"{path} is of tables of {versions}", "use the release that made it")
     numbers = (header.seed, header.count, header.shard_size)
-    if (
-        not all(type(n) is int for n in numbers)
-        or header.count < 1
-        or header.shard_size < 1
-        or not isinstance(header.digests, dict)
-        or not isinstance(header.vocabulary, dict)
-    ):
+    counted = all(type(n) is int for n in numbers) and min(numbers[1:]) >= 1
+    if not counted or not isinstance(header.digests, dict) or not isinstance(header.vocabulary, dict):
         raise ContentError(f"{path} holds numbers that cannot be (seed, count, shard_size = {numbers})", REMEDY)
     return header
 

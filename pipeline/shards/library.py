@@ -1,6 +1,6 @@
 """The asset library of a dataset: the assets that its homes use, hard-linked from a cache that all datasets of a machine share.
 
-It grows with the shards: a shard's assets are there before the shard is. When all shards are, it is settled: held against the cache
+It grows with the shards: a shard's assets are there before the shard is. When all shards are, it is fixed: held against the cache
 to the last byte, described by its tables, and committed.
 """
 
@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 
 from pipeline.manifest import text_of
 from pipeline.shards.commits import Commit, Entry, flush_all, record
-from pipeline.shards.disk import link, put, sync
+from pipeline.shards.disk import link, sync, write_durably
 from pipeline.shards.layout import ASSETS, commit_path
 from schemas.table import Table
 
@@ -28,7 +28,7 @@ class AssetSource(Protocol):
         """Return the tables that describe assets."""
 
 
-def adopt(folder: Path, source: AssetSource, staging: Path, asset_ids: Iterable[str]) -> None:
+def add_assets(folder: Path, source: AssetSource, staging: Path, asset_ids: Iterable[str]) -> None:
     """Bring the assets that are not there yet into the library of the dataset in `folder`."""
     missing = [a for a in sorted(asset_ids) if not (folder / ASSETS / a).exists()]
     (folder / ASSETS).mkdir(exist_ok=True)
@@ -51,18 +51,17 @@ def adopt(folder: Path, source: AssetSource, staging: Path, asset_ids: Iterable[
         sync(folder)
 
 
-def settle(folder: Path, source: AssetSource, staging: Path, asset_ids: set[str]) -> None:
+def commit_library(folder: Path, source: AssetSource, staging: Path, asset_ids: set[str]) -> None:
     """Make the library exactly these assets, as the cache has them, and commit it."""
     (folder / ASSETS).mkdir(exist_ok=True)
     files: dict[str, Entry] = {}
     for asset_id in sorted(asset_ids):
         place = folder / ASSETS / asset_id
         wanted = record(source.entry(asset_id), asset_id, {}, flush=False)
-        if place.exists() and (
-            wanted.first_change(place) or {p for p in place.rglob("*") if p.is_file()} != {place / p for p in wanted.files}
-        ):
+        there = {p.relative_to(place).as_posix() for p in place.rglob("*") if p.is_file()}
+        if place.exists() and (there != wanted.files.keys() or wanted.first_change(place)):
             shutil.rmtree(place)
-        adopt(folder, source, staging, [asset_id])
+        add_assets(folder, source, staging, [asset_id])
         files |= {f"{ASSETS}/{asset_id}/{path}": entry for path, entry in wanted.files.items()}
     for table, rows in source.tables(sorted(asset_ids)).items():
         path = staging / "tables" / f"{table.name}.parquet"
@@ -74,4 +73,4 @@ def settle(folder: Path, source: AssetSource, staging: Path, asset_ids: set[str]
         if path.name not in asset_ids and f"{ASSETS}/{path.name}" not in files:
             shutil.rmtree(path) if path.is_dir() else path.unlink()
     sync(folder / ASSETS)
-    put(folder / commit_path(ASSETS), text_of(Commit(ASSETS, files, {}).to_json()), staging)
+    write_durably(folder / commit_path(ASSETS), text_of(Commit(ASSETS, files, {}).to_json()), staging)

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from pipeline.errors import ContentError
 from pipeline.manifest import digest, sha256, text_of
 from pipeline.shards.commits import Commit, Entry, entry_of, read_commit
-from pipeline.shards.disk import put
+from pipeline.shards.disk import write_durably
 from pipeline.shards.header import Header, read_header
 from pipeline.shards.layout import ASSETS, EMPTY, HEADER, commit_path, index_of, shard_name
 from pipeline.tables import parquet
@@ -21,7 +21,7 @@ SEAL = "dataset"
 
 def seal(folder: Path, header: Header, staging: Path) -> None:
     """Write the seal of a dataset whose shards are all committed."""
-    put(folder / commit_path(SEAL), text_of(_content(folder, header)), staging)
+    write_durably(folder / commit_path(SEAL), text_of(_content(folder, header)), staging)
 
 
 def is_sealed(folder: Path, header: Header) -> bool:
@@ -49,11 +49,10 @@ def vouches(folder: Path, header: Header) -> bool:
 
 
 def _sealed_files(folder: Path) -> Mapping[str, Entry]:
-    try:
-        commit = read_commit(folder, SEAL)
-    except ContentError:
-        commit = None
-    return commit.files if commit else {}
+    with suppress(ContentError):
+        if commit := read_commit(folder, SEAL):
+            return commit.files
+    return {}
 
 
 def _scenes(folder: Path, table: str) -> Iterator[str]:
@@ -61,16 +60,12 @@ def _scenes(folder: Path, table: str) -> Iterator[str]:
     for path in sorted((folder / table).glob("shard-*.parquet")):
         with suppress(OSError, pa.ArrowException):
             rows = parquet(path)
-            yield from (
-                rows["scene_id"].to_pylist() if table == "scenes" else rows.filter(pc.equal(rows["what"], EMPTY))["where"].to_pylist()
-            )
-
-
-def _names(folder: Path, header: Header) -> list[str]:
-    library = [commit_path(ASSETS)] if (folder / commit_path(ASSETS)).is_file() else []
-    return [HEADER, *library, *(commit_path(shard_name(n)) for n in range(header.shards))]
+            ids = rows["scene_id"] if table == "scenes" else rows.filter(pc.equal(rows["what"], EMPTY))["where"]
+            yield from ids.to_pylist()
 
 
 def _content(folder: Path, header: Header) -> dict[str, Any]:
-    commit = Commit(SEAL, {name: entry_of(folder / name) for name in _names(folder, header)}, {}).to_json()
+    library = [ASSETS] if (folder / commit_path(ASSETS)).is_file() else []
+    names = [HEADER, *map(commit_path, [*library, *map(shard_name, range(header.shards))])]
+    commit = Commit(SEAL, {name: entry_of(folder / name) for name in names}, {}).to_json()
     return {**commit, "sha256": digest(commit)}

@@ -135,12 +135,8 @@ def _is_box(mesh: Mesh) -> bool:
     """Whether a convex mesh is a box with sides along the axes."""
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     ends = (np.abs(mesh.vertices - low) < SAME) | (np.abs(mesh.vertices - high) < SAME)
-    return bool(
-        len(mesh.vertices) == 8
-        and ends.all()
-        and (high - low > SAME).all()
-        and len(np.unique(mesh.vertices > (low + high) / 2, axis=0)) == 8
-    )
+    octants = np.unique(mesh.vertices > (low + high) / 2, axis=0)
+    return len(mesh.vertices) == len(octants) == 8 and bool(ends.all() and (high - low > SAME).all())
 
 
 def _passes(asset: Asset, link: int) -> list[int]:

@@ -19,22 +19,16 @@ def check_stage(path: Path) -> Usd.Stage:
         stage = Usd.Stage.Open(str(path))
     except Tf.ErrorException as error:
         raise ContentError(f"{path} is no USD stage ({str(error).splitlines()[0]})", "write the home again") from error
-    faults = [f"usd says: {message}" for message in _messages(collector)]
+    faults = [f"usd says: {message}" for message in (d.commentary for d in collector.TakeUncoalescedDiagnostics())]
     del collector
-    faults += _dependencies(stage)
-    faults += _stage_faults(stage)
+    faults += [*_dependency_faults(stage), *_stage_faults(stage)]
     if faults:
         shown = "; ".join(faults[:8]) + (f"; and {len(faults) - 8} more" if len(faults) > 8 else "")
         raise ContentError(f"{path}: {shown}", "this stage would misbehave in a simulator; write the home again")
     return stage
 
 
-def _messages(collector: UsdUtils.CoalescingDiagnosticDelegate) -> list[str]:
-    kept = [*collector.TakeUncoalescedDiagnostics()]
-    return [d.commentary for d in kept]
-
-
-def _dependencies(stage: Usd.Stage) -> Iterator[str]:
+def _dependency_faults(stage: Usd.Stage) -> Iterator[str]:
     """Yield what is unresolved or not relative."""
     root = stage.GetRootLayer()
     _layers, _assets, unresolved = UsdUtils.ComputeAllDependencies(root.realPath)
@@ -69,10 +63,8 @@ def _articulation_faults(prim: Usd.Prim, cache: UsdGeom.XformCache) -> Iterator[
     if prim.IsInstance() or prim.IsInstanceProxy():
         yield f"{prim.GetPath()} is an instanced articulation"
     matrix = cache.GetLocalToWorldTransform(prim)
-    for k in range(3):
-        if abs(Gf.Vec3d(*(matrix[k][c] for c in range(3))).GetLength() - 1) > 1e-6:
-            yield f"{prim.GetPath()} is a scaled articulation"
-            return
+    if any(abs(matrix.GetRow3(k).GetLength() - 1) > 1e-6 for k in range(3)):
+        yield f"{prim.GetPath()} is a scaled articulation"
 
 
 def _joint_faults(joint: UsdPhysics.Joint, cache: UsdGeom.XformCache) -> Iterator[str]:
@@ -93,6 +85,5 @@ def _joint_faults(joint: UsdPhysics.Joint, cache: UsdGeom.XformCache) -> Iterato
     if frames[0] is None or frames[1] is None:
         return
     difference = frames[0] * frames[1].GetInverse()
-    identity = Gf.Matrix4d(1.0)
-    if max(abs(difference[i][j] - identity[i][j]) for i in range(4) for j in range(4)) > TOLERANCE:
+    if max(abs(difference[i][j] - (i == j)) for i in range(4) for j in range(4)) > TOLERANCE:
         yield f"{path} has disjointed frames"

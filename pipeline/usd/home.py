@@ -16,7 +16,7 @@ from pipeline.usd.layer import read_layer, save
 from pipeline.usd.lights import lamp, sky
 from pipeline.usd.material import Palette
 from pipeline.usd.physics import convert_scene
-from pipeline.usd.prim_templates import cast, group, mould, quote, transform_ops
+from pipeline.usd.prim_templates import group, instantiate, quote, template_of, transform_ops
 from pipeline.usd.shared_boards import OVER, boards_felt_elsewhere
 from pipeline.usd.shell import MATERIALS, door_texts, room_text, walls_text, window_texts
 
@@ -34,7 +34,7 @@ def home_layer(home: Home, assets: Mapping[str, Asset], library: str = "../../as
     """
     plan, materials = home.plan, Palette(MATERIALS)
     groups: dict[str, list[str]] = {name: [] for name in ("Rooms", "Walls", "Doors", "Windows", "Objects", "Lights")}
-    groups["Lights"].append(cast(sky(), "/World/Lights/Sky"))
+    groups["Lights"].append(instantiate(sky(), "/World/Lights/Sky"))
     shells = {level: shell(plan, level) for level in levels(plan)}
     building: list[Prism] = []
     for level, built in shells.items():
@@ -50,14 +50,15 @@ def home_layer(home: Home, assets: Mapping[str, Asset], library: str = "../../as
                 groups["Lights"].append(lamp(f"/World/Lights/{room.room_id}", room, plan.levels_of(room)[-1] * plan.storey_height))
     spared = boards_felt_elsewhere(plan, [p for p in home.placements if p.asset_id in assets], assets, building)
     groups["Objects"] += [placement_text("/World/Objects", p, assets, library, spared.get(p.object_id, ())) for p in home.placements]
-    parts = [cast(group("group"), f"/World/{name}", "".join(texts)) for name, texts in groups.items()]
-    world = cast(group("assembly"), "/World", "".join([materials.text(), *parts]))
-    return read_layer(world + cast(_scene(), "/PhysicsScene"), "World", suffix, _about(home))
+    parts = [instantiate(group("group"), f"/World/{name}", "".join(texts)) for name, texts in groups.items()]
+    world = instantiate(group("assembly"), "/World", "".join([materials.text(), *parts]))
+    about = {"scene_id": home.scene_id, "prompt": home.prompt, "generator": "sfgen"}
+    return read_layer(world + instantiate(_scene(), "/PhysicsScene"), "World", suffix, about)
 
 
 @functools.cache
 def _scene() -> str:
-    return mould(lambda layer: convert_scene(layer, "Mould"))
+    return template_of(lambda layer: convert_scene(layer, "Template"))
 
 
 def placement_text(parent: str, placement: Placement, assets: Mapping[str, Asset], library: str, spared: Sequence[str] = ()) -> str:
@@ -67,13 +68,11 @@ def placement_text(parent: str, placement: Placement, assets: Mapping[str, Asset
     """
     asset = assets.get(placement.asset_id)
     if asset is None:
-        raise ContentError(
-            f"object {placement.object_id} places asset {placement.asset_id!r}, which is not in the library", "run preprocess again"
-        )
+        message = f"object {placement.object_id} places asset {placement.asset_id!r}, which is not in the library"
+        raise ContentError(message, "run preprocess again")
     if asset.articulated and any(abs(s - 1) > 1e-9 for s in placement.scale):
-        raise ContentError(
-            f"object {placement.object_id} scales the articulated asset {asset.asset_id}", "place it with scale 1: joints break otherwise"
-        )
+        message = f"object {placement.object_id} scales the articulated asset {asset.asset_id}"
+        raise ContentError(message, "place it with scale 1: joints break otherwise")
     about = f"bool articulated = {int(asset.articulated)}\nstring room_id = {quote(placement.room_id)}\n"
     support = f"rel sfgen:support = <{parent}/{placement.support}>\n" if placement.support else ""
     return (
@@ -90,7 +89,3 @@ def _without(paths: Sequence[str]) -> str:
     for link, name in (path.split("/") for path in paths):
         by_link.setdefault(link, []).append(f'over "{name}" (\nactive = false\n)\n{{\n}}\n')
     return "".join(f'over "{link}"\n{{\n{"".join(overs)}}}\n' for link, overs in by_link.items())
-
-
-def _about(home: Home) -> dict[str, object]:
-    return {"scene_id": home.scene_id, "prompt": home.prompt, "generator": "sfgen"}

@@ -42,19 +42,16 @@ def convert_joint(
     if math.isfinite(joint.lower) and math.isfinite(joint.upper):
         attribute(spec, "physics:lowerLimit", "float", joint.lower * unit)
         attribute(spec, "physics:upperLimit", "float", joint.upper * unit)
-        for name, value in zip(("limitStiffness", "limitDamping"), STOP, strict=True):
-            attribute(
-                spec, f"newton:{name}", "float", value * resistance.inertia / unit
-            )  # Newton reads them by name; PhysX does not know them
+        for name, value in zip(("limitStiffness", "limitDamping"), STOP, strict=True):  # by Newton's names; PhysX does not know them
+            attribute(spec, f"newton:{name}", "float", value * resistance.inertia / unit)
     attribute(spec, "newton:armature", "float", resistance.armature)  # this and friction: PhysX, Newton and MuJoCo
     attribute(spec, "newton:friction", "float", resistance.friction)
     drive = "angular" if hinge else "linear"
     apply(spec, [f"PhysicsDriveAPI:{drive}"])
     attribute(spec, f"drive:{drive}:physics:type", "token", "force", uniform=True)
-    attribute(spec, f"drive:{drive}:physics:stiffness", "float", resistance.stiffness / unit)
-    attribute(spec, f"drive:{drive}:physics:damping", "float", resistance.damping / unit)
-    attribute(spec, f"drive:{drive}:physics:targetPosition", "float", 0.0)
-    attribute(spec, f"drive:{drive}:physics:targetVelocity", "float", 0.0)
+    spring = {"stiffness": resistance.stiffness / unit, "damping": resistance.damping / unit, "targetPosition": 0.0, "targetVelocity": 0.0}
+    for name, value in spring.items():
+        attribute(spec, f"drive:{drive}:physics:{name}", "float", value)
     label(spec, "part", [joint.part_class])
     return spec
 

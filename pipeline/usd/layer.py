@@ -13,35 +13,6 @@ from pxr import Gf, Sdf, Vt, Work
 
 Work.SetConcurrencyLimit(1)  # a layer is written in some milliseconds: handing them to threads costs more than it brings
 
-VALUE_TYPES = {
-    name: getattr(Sdf.ValueTypeNames, attribute)
-    for name, attribute in {
-        "bool": "Bool",
-        "int": "Int",
-        "int[]": "IntArray",
-        "float": "Float",
-        "float3": "Float3",
-        "float2": "Float2",
-        "float3[]": "Float3Array",
-        "double": "Double",
-        "double3": "Double3",
-        "double[]": "DoubleArray",
-        "quatf": "Quatf",
-        "quatd": "Quatd",
-        "point3f": "Point3f",
-        "point3f[]": "Point3fArray",
-        "vector3f": "Vector3f",
-        "normal3f[]": "Normal3fArray",
-        "color3f": "Color3f",
-        "color3f[]": "Color3fArray",
-        "texCoord2f[]": "TexCoord2fArray",
-        "token": "Token",
-        "token[]": "TokenArray",
-        "string": "String",
-        "asset": "Asset",
-    }.items()
-}
-
 
 def new_layer(default_prim: str, suffix: str, data: Mapping[str, Any] | None = None) -> Sdf.Layer:
     """Start a layer: Z up, metres, kilograms. `suffix` is ".usda" or ".usdc"."""
@@ -104,12 +75,10 @@ def apply(spec: Sdf.PrimSpec, apis: Iterable[str]) -> None:
     spec.SetInfo("apiSchemas", operation)
 
 
-def attribute(
-    spec: Sdf.PrimSpec, name: str, kind: str, value: Any = None, *, uniform: bool = False, custom: bool = False
-) -> Sdf.AttributeSpec:
-    """Write an attribute of a type of VALUE_TYPES."""
+def attribute(spec: Sdf.PrimSpec, name: str, kind: str, value: Any = None, *, uniform: bool = False) -> Sdf.AttributeSpec:
+    """Write an attribute of a type that USD knows by the name `kind`: "float", "point3f[]"."""
     variability = Sdf.VariabilityUniform if uniform else Sdf.VariabilityVarying
-    attribute_spec = Sdf.AttributeSpec(spec, name, VALUE_TYPES[kind], variability, custom)
+    attribute_spec = Sdf.AttributeSpec(spec, name, Sdf.ValueTypeNames.Find(kind), variability, False)
     if value is not None:
         attribute_spec.default = value
     return attribute_spec

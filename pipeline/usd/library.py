@@ -33,10 +33,7 @@ def write_asset(asset: Asset, folder: Path) -> list[Path]:
     Nothing is flushed to disk here: the commit of the library does that for all files at once.
     """
     payload = _payload(asset)
-    written = [
-        save(payload, folder / f"{asset.asset_id}_payload.usdc"),
-        save(_interface(asset), folder / f"{asset.asset_id}.usda"),
-    ]
+    written = [save(payload, folder / f"{asset.asset_id}_payload.usdc"), save(_interface(asset), folder / f"{asset.asset_id}.usda")]
     if asset.articulated:
         written.append(save(asset_overlay(asset, payload), folder / overlay_path(asset)))
     for name, blob in sorted(asset.textures.items()):
@@ -93,6 +90,8 @@ def bounds(asset: Asset) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
 def _about(asset: Asset) -> dict[str, Any]:
     """Return the interface's metadata, after SimReady's names; no date, so that the bytes depend on the asset alone."""
     low, high = bounds(asset)
+    # where the variant of a runtime is turned on, for who looks for it without composing anything
+    where = {"prim": f"/{asset.asset_id}", "variantSetName": VARIANT_SET, "activateOption": "Enabled"}
     return {
         "asset_name": asset.asset_id,
         "asset_type": asset.category,
@@ -107,11 +106,6 @@ def _about(asset: Asset) -> dict[str, Any]:
             "collider_count": sum(len(link.colliders) for link in asset.links),
             "mass": float(sum(link.mass for link in asset.links)),
             "asset_extents": Gf.Vec3f(*map(float, high - low)),
-            **({"Variants": _variants(asset)} if asset.articulated else {}),
+            **({"Variants": {"Physics": {VARIANT_SET: where}}} if asset.articulated else {}),
         },
     }
-
-
-def _variants(asset: Asset) -> dict[str, Any]:
-    """Return where the variant of each runtime is turned on, for who looks for it without composing anything."""
-    return {"Physics": {VARIANT_SET: {"prim": f"/{asset.asset_id}", "variantSetName": VARIANT_SET, "activateOption": "Enabled"}}}

@@ -8,7 +8,7 @@ from shapely.geometry import Polygon
 
 from pipeline.entities.plan import Room
 from pipeline.usd.layer import attribute, prim
-from pipeline.usd.prim_templates import cast, mould, transform_ops
+from pipeline.usd.prim_templates import instantiate, template_of, transform_ops
 
 DOME_INTENSITY = 600.0
 LAMP_INTENSITY = 4000.0
@@ -16,7 +16,7 @@ LAMP_GAP = 0.03  # below the ceiling [m]
 
 
 def sky() -> str:
-    """Return the mould of the sky."""
+    """Return the template of the sky."""
     return _light("DomeLight", DOME_INTENSITY, (0.86, 0.92, 1.0))
 
 
@@ -25,21 +25,20 @@ def lamp(path: str, room: Room, elevation: float) -> str:
     x, y = _inside(Polygon(room.polygon))
     side = float(np.clip(0.16 * np.sqrt(room.area), 0.25, 0.9))
     size = f"float inputs:width = {side!r}\nfloat inputs:height = {side!r}\n"
-    return cast(
-        _light("RectLight", LAMP_INTENSITY, (1.0, 0.93, 0.82)), path, transform_ops((x, y, elevation + room.height - LAMP_GAP)) + size
-    )
+    where = transform_ops((x, y, elevation + room.height - LAMP_GAP))
+    return instantiate(_light("RectLight", LAMP_INTENSITY, (1.0, 0.93, 0.82)), path, where + size)
 
 
 @functools.cache
 def _light(kind: str, intensity: float, colour: tuple[float, float, float]) -> str:
-    """Return the mould of a light of a USD type."""
+    """Return the template of a light of a USD type."""
 
     def convert(layer: Sdf.Layer) -> None:
-        spec = prim(layer, "Mould", kind)
+        spec = prim(layer, "Template", kind)
         attribute(spec, "inputs:intensity", "float", intensity)
         attribute(spec, "inputs:color", "color3f", Gf.Vec3f(*colour))
 
-    return mould(convert)
+    return template_of(convert)
 
 
 def _inside(polygon: Polygon) -> tuple[float, float]:

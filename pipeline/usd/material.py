@@ -7,7 +7,7 @@ from pxr import Gf, Sdf
 
 from pipeline.entities.asset import Material
 from pipeline.usd.layer import apply, attribute, identifiers, label, prim, relationship
-from pipeline.usd.prim_templates import cast, group, mould
+from pipeline.usd.prim_templates import group, instantiate, template_of
 
 FRICTION = (0.7, 0.6)  # static, dynamic: dry wood, painted board
 SLIPPERY = (0.35, 0.3)  # metal, glass, glazed tiles
@@ -24,8 +24,7 @@ def convert_material(scope: Sdf.PrimSpec, name: str, material: Material) -> Sdf.
     """Write one material: surface, texture if it has one, friction."""
     spec = prim(scope, name, "Material", ["PhysicsMaterialAPI"])
     label(spec, "material", [material.name])
-    surface = prim(spec, "surface", "Shader")
-    attribute(surface, "info:id", "token", "UsdPreviewSurface", uniform=True)
+    surface = _shader(spec, "surface", "UsdPreviewSurface")
     diffuse = attribute(surface, "inputs:diffuseColor", "color3f", Gf.Vec3f(*material.base_color))
     attribute(surface, "inputs:roughness", "float", material.roughness)
     attribute(surface, "inputs:metallic", "float", material.metallic)
@@ -44,20 +43,23 @@ def convert_material(scope: Sdf.PrimSpec, name: str, material: Material) -> Sdf.
 
 
 def _texture(spec: Sdf.PrimSpec, material: Material) -> Sdf.PrimSpec:
-    reader = prim(spec, "st", "Shader")
-    attribute(reader, "info:id", "token", "UsdPrimvarReader_float2", uniform=True)
+    reader = _shader(spec, "st", "UsdPrimvarReader_float2")
     attribute(reader, "inputs:varname", "string", "st")
     attribute(reader, "outputs:result", "float2")
-    texture = prim(spec, "diffuse", "Shader")
-    attribute(texture, "info:id", "token", "UsdUVTexture", uniform=True)
+    texture = _shader(spec, "diffuse", "UsdUVTexture")
     attribute(texture, "inputs:file", "asset", Sdf.AssetPath(f"./{material.texture}"))
-    attribute(texture, "inputs:sourceColorSpace", "token", "sRGB")
-    attribute(texture, "inputs:wrapS", "token", "repeat")
-    attribute(texture, "inputs:wrapT", "token", "repeat")
+    for name, value in (("sourceColorSpace", "sRGB"), ("wrapS", "repeat"), ("wrapT", "repeat")):
+        attribute(texture, f"inputs:{name}", "token", value)
     st = attribute(texture, "inputs:st", "float2")
     st.connectionPathList.explicitItems = [reader.path.AppendProperty("outputs:result")]
     attribute(texture, "outputs:rgb", "float3")
     return texture
+
+
+def _shader(parent: Sdf.PrimSpec, name: str, kind: str) -> Sdf.PrimSpec:
+    spec = prim(parent, name, "Shader")
+    attribute(spec, "info:id", "token", kind, uniform=True)
+    return spec
 
 
 class Palette:
@@ -78,13 +80,13 @@ class Palette:
 
     def text(self) -> str:
         """Return the scope with what has been asked for so far."""
-        return cast(group(schema="Scope"), self._path, "".join(cast(_material(m), self.path(m)) for m in self._used.values()))
+        return instantiate(group(schema="Scope"), self._path, "".join(instantiate(_material(m), self.path(m)) for m in self._used.values()))
 
 
 @functools.lru_cache(maxsize=256)
 def _material(material: Material) -> str:
-    """Return the mould of a material."""
-    return mould(lambda layer: convert_material(layer, "Mould", material))
+    """Return the template of a material."""
+    return template_of(lambda layer: convert_material(layer, "Template", material))
 
 
 def bind(spec: Sdf.PrimSpec, material: Sdf.Path) -> None:

@@ -5,6 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from pxr import Sdf, Vt
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from pipeline.entities.asset import Mesh
 from pipeline.geometry.compiled import compiled
@@ -62,8 +64,8 @@ def split_nonmanifold(rows: NDArray[np.floating], faces: NDArray[np.int32]) -> t
     one, other = order[first[times == 2]], order[first[times == 2] + 1]
     alike = turned[one] == turned[other]  # two boards' rims on each other: faces of one surface run along their edge both ways
     one, other = one[~alike], other[~alike]
-    fan = _component_labels(3 * count, edge_corners[one].ravel(), edge_corners[other].ravel())
-    fans = int(fan.max(initial=-1)) + 1
+    pairs = edge_corners[one].ravel(), edge_corners[other].ravel()
+    fans, fan = connected_components(coo_array((np.ones(len(pairs[0]), np.int8), pairs), shape=(3 * count, 3 * count)), directed=False)
     if fans == len(np.unique(faces)):
         return rows, faces
     owner = np.zeros(fans, np.int64)
@@ -92,30 +94,6 @@ def split_polygons(
     split = np.empty_like(indices)
     split[corners] = faces
     return rows, split
-
-
-@compiled
-def _component_labels(count: int, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the part (count,) of each of `count` points that pairs of them join, numbered in the order of their first points."""
-    parent = np.arange(count)
-    for k in range(len(one)):
-        a, b = one[k], other[k]
-        while parent[a] != a:
-            parent[a] = parent[parent[a]]
-            a = parent[a]
-        while parent[b] != b:
-            parent[b] = parent[parent[b]]
-            b = parent[b]
-        parent[max(a, b)] = min(a, b)  # a part is known by its first point
-    parts = 0
-    labels = np.empty(count, np.int64)
-    for point in range(count):
-        if parent[point] == point:
-            labels[point] = parts
-            parts += 1
-        else:
-            labels[point] = labels[parent[point]]
-    return labels
 
 
 def convert_box(parent: Sdf.PrimSpec, name: str, low: NDArray[np.floating], high: NDArray[np.floating]) -> Sdf.PrimSpec:

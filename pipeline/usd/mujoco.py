@@ -38,25 +38,20 @@ def home_overlay(source: Sdf.Layer, name: str) -> Sdf.Layer:
     layer.subLayerPaths.append(f"./{name}")
     root = over(layer, source.defaultPrim)
     if source.GetPrimAtPath(SCENE):
-        _let_sleep(over(layer, SCENE.name))
-    objects = world.nameChildren.get("Objects")
-    if objects is not None:
-        scope = over(root, "Objects")
-        for spec in objects.nameChildren:
-            if spec.customData.get("articulated", False):
+        scene = over(layer, SCENE.name)  # what lies still sleeps, which of a home is nearly all
+        attribute(scene, "mjc:flag:sleep", "bool", True, uniform=True)
+        attribute(scene, "mjc:option:sleep_tolerance", "double", ASLEEP, uniform=True)
+    for kind in ("Objects", "Doors"):
+        group = world.nameChildren.get(kind)
+        if group is None:
+            continue
+        scope = over(root, kind)
+        for spec in group.nameChildren:
+            if kind == "Doors":
+                _convert(over(scope, spec.name), spec)
+            elif spec.customData.get("articulated", False):
                 over(scope, spec.name).variantSelections["MuJoCo"] = "Enabled"
-    doors = world.nameChildren.get("Doors")
-    if doors is not None:
-        scope = over(root, "Doors")
-        for spec in doors.nameChildren:
-            _convert(over(scope, spec.name), spec)
     return layer
-
-
-def _let_sleep(scene: Sdf.PrimSpec) -> None:
-    """Let what lies still sleep, which of a home is nearly all."""
-    attribute(scene, "mjc:flag:sleep", "bool", True, uniform=True)
-    attribute(scene, "mjc:option:sleep_tolerance", "double", ASLEEP, uniform=True)
 
 
 def _convert(root: Sdf.PrimSpec, source: Sdf.PrimSpec) -> None:

@@ -1,4 +1,4 @@
-"""Prims as text: what a home consists of is converted once, and then cast again and again under other names, at other places.
+"""Prims as text: what a home consists of is converted once, and then written again and again under other names, at other places.
 
 Writing through Sdf costs some ten microseconds an attribute, and a home has four thousand; its text is read in one go.
 """
@@ -16,34 +16,34 @@ from pipeline.usd.layer import prim
 Convert = Callable[[Sdf.Layer], object]
 
 
-def mould(convert: Convert, without: Iterable[str] = ()) -> str:
-    """Return the prim /Mould that `convert` writes into a layer as text, less the properties that each cast has of its own."""
+def template_of(convert: Convert, without: Iterable[str] = ()) -> str:
+    """Return the prim /Template that `convert` writes into a layer as text, less the properties that each instance has of its own."""
     layer = Sdf.Layer.CreateAnonymous(".usda")
     convert(layer)
-    spec = layer.GetPrimAtPath("/Mould")
+    spec = layer.GetPrimAtPath("/Template")
     for name in without:
         spec.RemoveProperty(spec.properties[name])
     text: str = layer.ExportToString()
     return text[text.index("def ") :]
 
 
-def cast(form: str, path: str, own: str = "") -> str:
-    """Return a mould's prim as it stands at `path`, with properties and children of its `own`."""
+def instantiate(template: str, path: str, own: str = "") -> str:
+    """Return the prim of a template as it stands at `path`, with properties and children of its `own`."""
     parent, name = path.rsplit("/", 1)
-    text = form.replace('"Mould"', f'"{name}"', 1).replace("</Mould", f"<{parent}/{name}")
+    text = template.replace('"Template"', f'"{name}"', 1).replace("</Template", f"<{parent}/{name}")
     return text.replace("{\n", f"{{\n{own}", 1)
 
 
 @functools.cache
 def group(kind: str = "", schema: str = "Xform") -> str:
-    """Return the mould of a prim that holds others, of a model kind or "" for none."""
+    """Return the template of a prim that holds others, of a model kind or "" for none."""
 
     def convert(layer: Sdf.Layer) -> None:
-        spec = prim(layer, "Mould", schema)
+        spec = prim(layer, "Template", schema)
         if kind:
             spec.kind = kind
 
-    return mould(convert)
+    return template_of(convert)
 
 
 def transform_ops(position: Sequence[float], yaw: float = 0.0, scale: Sequence[float] = (1.0, 1.0, 1.0)) -> str:

@@ -17,7 +17,7 @@ from pipeline.usd.layer import attribute, label, prim
 from pipeline.usd.material import Palette, bind
 from pipeline.usd.mesh import convert_box, convert_mesh, convert_polygons, flat_normals, split_polygons
 from pipeline.usd.physics import convert_collider, hide
-from pipeline.usd.prim_templates import cast, group, mesh_attributes, mould, transform_ops
+from pipeline.usd.prim_templates import group, instantiate, mesh_attributes, template_of, transform_ops
 
 MATERIALS = "/World/Materials"  # where a home's own parts find theirs
 SHAPE = ("points", "extent", "normals")  # what each prism has of its own
@@ -37,22 +37,22 @@ def room_text(parent: str, plan: Plan, room: Room, shells: Mapping[int, Shell], 
     parts = [transform_ops((0.0, 0.0, room.level * plan.storey_height))]
     for name, bottom, material in (("floor", -SLAB, palette.floor(room.type)), ("ceiling", under, palette.CEILING)):
         slabs = (_slab(f"{path}/{name}/piece_{i}", piece, (bottom, bottom + SLAB), material, materials) for i, piece in enumerate(pieces))
-        parts.append(cast(_scope(name), f"{path}/{name}", "".join(slabs)))
+        parts.append(instantiate(_labelled(name), f"{path}/{name}", "".join(slabs)))
     panels: list[Panel] = []
     for k, level in enumerate(storeys):
         faces = room_panels(room, shells[level].cuts, plan.storey_height if level < storeys[-1] else room.height)
         panels.extend(Panel(face.owner, face.corners + np.array([0.0, 0.0, k * plan.storey_height])) for face in faces)
     if panels:
         parts.append(_panels(f"{path}/wall", panels, palette.wall(room.type), materials))
-    return cast(_room(room.type), path, "".join(parts))
+    return instantiate(_labelled("room", room_type=room.type), path, "".join(parts))
 
 
 def walls_text(parent: str, plan: Plan, level: int, shell: Shell, solids: Iterable[Prism], materials: Palette) -> str:
     """Return a storey's `solids` (colliders, one box or convex piece each), facade, jambs, thresholds and steps."""
     path = f"{parent}/level_{level}"
     plaster = materials.path(palette.PLASTER)
-    made = [_solid(f"{path}/solids/{solid.kind}_{i:03d}", solid, plaster) for i, solid in enumerate(solids)]
-    parts = [transform_ops((0.0, 0.0, level * plan.storey_height)), cast(group(schema="Scope"), f"{path}/solids", "".join(made))]
+    masses = [_solid(f"{path}/solids/{solid.kind}_{i:03d}", solid, plaster) for i, solid in enumerate(solids)]
+    parts = [transform_ops((0.0, 0.0, level * plan.storey_height)), instantiate(group(schema="Scope"), f"{path}/solids", "".join(masses))]
     parts.append(_panels(f"{path}/facade", outer_panels(shell), palette.FACADE, materials))
     faces = [panel for cut in shell.cuts for panel in reveals(cut)]
     if faces:
@@ -66,8 +66,8 @@ def walls_text(parent: str, plan: Plan, level: int, shell: Shell, solids: Iterab
             _slab(f"{path}/stairs/{step.kind}_{i:02d}", step.polygon, (step.bottom, step.top), palette.STEP, materials, collides=True)
             for i, step in enumerate(shell.stairs)
         )
-        parts.append(cast(_scope("stairs", "Scope"), f"{path}/stairs", "".join(steps)))
-    return cast(_scope("wall"), path, "".join(parts))
+        parts.append(instantiate(_labelled("stairs", "Scope"), f"{path}/stairs", "".join(steps)))
+    return instantiate(_labelled("wall"), path, "".join(parts))
 
 
 def door_texts(parent: str, elevation: float, shell: Shell, materials: Palette) -> list[str]:
@@ -78,7 +78,7 @@ def door_texts(parent: str, elevation: float, shell: Shell, materials: Palette) 
         fitting = _door(fittings.door_size(leaf), entrance=kinds[leaf.opening_id] == "entrance")
         materials.paths(fitting.materials)
         where = transform_ops((*leaf.hinge, elevation), float(np.arctan2(leaf.along[1], leaf.along[0])))
-        texts.append(cast(fitting.form, f"{parent}/{leaf.opening_id}", where))
+        texts.append(instantiate(fitting.template, f"{parent}/{leaf.opening_id}", where))
     return texts
 
 
@@ -87,18 +87,17 @@ def window_texts(parent: str, elevation: float, shell: Shell, materials: Palette
     texts = []
     for cut in shell.cuts:
         if cut.opening.kind == "window":
-            a, b = (cut.quad[0] + cut.quad[3]) / 2, (cut.quad[1] + cut.quad[2]) / 2
-            fitting = _window(fittings.window_size(cut))
+            fitting, (start, yaw) = _window(fittings.window_size(cut)), fittings.window_pose(cut)
             materials.paths(fitting.materials)
-            where = transform_ops((*a, elevation), float(np.arctan2(*(b - a)[::-1])))
-            texts.append(cast(fitting.form, f"{parent}/{cut.opening.opening_id}", where))
+            where = transform_ops((*start, elevation), yaw)
+            texts.append(instantiate(fitting.template, f"{parent}/{cut.opening.opening_id}", where))
     return texts
 
 
 class Fitting(NamedTuple):
-    """A door or window of one size: its mould and its materials."""
+    """A door or window of one size: its template and its materials."""
 
-    form: str
+    template: str
     materials: tuple[Material, ...]
 
 
@@ -114,11 +113,11 @@ def _window(size: fittings.Size) -> Fitting:
 
 def _fitting(asset: Asset, name: str) -> Fitting:
     def convert(layer: Sdf.Layer) -> None:
-        spec = prim(layer, "Mould")
+        spec = prim(layer, "Template")
         label(spec, "class", [name])
         convert_asset(spec, asset, Palette(MATERIALS).paths(asset.materials))
 
-    return Fitting(mould(convert), asset.materials)
+    return Fitting(template_of(convert), asset.materials)
 
 
 def prism_points(polygon: NDArray[np.float64], bottom: float, top: float) -> NDArray[np.float64]:
@@ -148,18 +147,16 @@ def _prism_shape(polygon: NDArray[np.float64], bottom: float, top: float) -> str
 
 
 @functools.cache
-def _scope(name: str, kind: str = "Xform") -> str:
-    return mould(lambda layer: label(prim(layer, "Mould", kind), "class", [name]))
+def _labelled(name: str, schema: str = "Xform", room_type: str = "") -> str:
+    """Return the template of a prim that holds others, labelled as a `name` and, where it is a room, with its type."""
 
-
-@functools.cache
-def _room(kind: str) -> str:
     def convert(layer: Sdf.Layer) -> None:
-        spec = prim(layer, "Mould")
-        label(spec, "class", ["room"])
-        label(spec, "room_type", [kind])
+        spec = prim(layer, "Template", schema)
+        label(spec, "class", [name])
+        if room_type:
+            label(spec, "room_type", [room_type])
 
-    return mould(convert)
+    return template_of(convert)
 
 
 def _solid(path: str, solid: Prism, material: str) -> str:
@@ -169,30 +166,23 @@ def _solid(path: str, solid: Prism, material: str) -> str:
     if len(p) == 4 and float(np.abs(p[0] + p[2] - p[1] - p[3]).max()) < EXACT and abs((p[1] - p[0]) @ (p[3] - p[0])) < EXACT:
         size = (*(float(np.linalg.norm(p[k] - p[0])) for k in (1, 3)), high - low)
         yaw = float(np.arctan2(*(p[1] - p[0])[::-1]))
-        return cast(_block_form(material), path, transform_ops((*p.mean(axis=0), (low + high) / 2), yaw, size))
-    return cast(_prism_form(len(p), material), path, _prism_shape(p, low, high))
+        return instantiate(_solid_template(0, material), path, transform_ops((*p.mean(axis=0), (low + high) / 2), yaw, size))
+    return instantiate(_solid_template(len(p), material), path, _prism_shape(p, low, high))
 
 
 @functools.lru_cache(maxsize=256)
-def _block_form(material: str) -> str:
+def _solid_template(corners: int, material: str) -> str:
+    """Return the template of a solid over a polygon of so many corners, of a cube for 0."""
+
     def convert(layer: Sdf.Layer) -> None:
-        gprim = convert_box(layer, "Mould", np.zeros(3), np.ones(3))
+        gprim = (
+            convert_mesh(layer, "Template", _prism(corners), None) if corners else convert_box(layer, "Template", np.zeros(3), np.ones(3))
+        )
         hide(gprim)
         convert_collider(gprim)
         bind(gprim, material)
 
-    return mould(convert, PLACE)
-
-
-@functools.lru_cache(maxsize=256)
-def _prism_form(corners: int, material: str) -> str:
-    def convert(layer: Sdf.Layer) -> None:
-        gprim = convert_mesh(layer, "Mould", _prism(corners), None)
-        hide(gprim)
-        convert_collider(gprim)
-        bind(gprim, material)
-
-    return mould(convert, SHAPE)
+    return template_of(convert, SHAPE if corners else PLACE)
 
 
 def _slab(
@@ -200,21 +190,21 @@ def _slab(
     *, collides: bool = False,
 ) -> str:  # fmt: skip
     """Return a prism that is seen, labelled as `name`."""
-    form = _slab_form(len(polygon), material, materials.path(material), name, collides=collides)
-    return cast(form, path, _prism_shape(polygon, *heights))
+    template = _slab_template(len(polygon), material, materials.path(material), name, collides=collides)
+    return instantiate(template, path, _prism_shape(polygon, *heights))
 
 
 @functools.lru_cache(maxsize=256)
-def _slab_form(corners: int, material: Material, path: str, name: str, *, collides: bool) -> str:
+def _slab_template(corners: int, material: Material, path: str, name: str, *, collides: bool) -> str:
     def convert(layer: Sdf.Layer) -> None:
-        gprim = convert_mesh(layer, "Mould", _prism(corners), material.base_color)
+        gprim = convert_mesh(layer, "Template", _prism(corners), material.base_color)
         bind(gprim, path)
         if collides:
             convert_collider(gprim)
         if name:
             label(gprim, "class", [name])
 
-    return mould(convert, SHAPE)
+    return template_of(convert, SHAPE)
 
 
 def _panels(path: str, panels: Iterable[Panel], material: Material, materials: Palette) -> str:
@@ -227,16 +217,16 @@ def _panels(path: str, panels: Iterable[Panel], material: Material, materials: P
     rows, indices = split_polygons(rows, counts, index.reshape(-1).astype(np.int32))  # a door above a wall: its sides meet no edge of that
     topology = f"int[] faceVertexCounts = {counts.tolist()}\nint[] faceVertexIndices = {indices.tolist()}\n"
     shape = mesh_attributes(rows[:, :3], rows[:, 3:], "vertex")
-    return cast(_panels_form(material, materials.path(material)), path, shape + topology)
+    return instantiate(_panels_template(material, materials.path(material)), path, shape + topology)
 
 
 @functools.lru_cache(maxsize=256)
-def _panels_form(material: Material, path: str) -> str:
+def _panels_template(material: Material, path: str) -> str:
     def convert(layer: Sdf.Layer) -> None:
         one = np.arange(3, dtype=np.int32)
-        gprim = convert_polygons(layer, "Mould", np.eye(3), one[2:] + 1, one, material.base_color)
+        gprim = convert_polygons(layer, "Template", np.eye(3), one[2:] + 1, one, material.base_color)
         attribute(gprim, "doubleSided", "bool", True, uniform=True)
         label(gprim, "class", ["wall"])
         bind(gprim, path)
 
-    return mould(convert, (*SHAPE, "faceVertexCounts", "faceVertexIndices"))
+    return template_of(convert, (*SHAPE, "faceVertexCounts", "faceVertexIndices"))

@@ -97,10 +97,10 @@ def test_circulation_counts_detours_only():
 
 
 def test_area_is_absolute():
-    wanted, heed = np.array([10.0, 12.0]), np.ones(2)
-    assert energy.area(np.array([10.0, 12.0]), wanted, heed) == 0.0
-    assert energy.area(np.array([5.0, 12.0]), wanted, heed) == pytest.approx(4.0 * 1.0 / 2)
-    assert energy.area(np.array([20.0, 24.0]), wanted, heed) == pytest.approx(4.0)  # shares would say 0
+    wanted, area_weight = np.array([10.0, 12.0]), np.ones(2)
+    assert energy.area(np.array([10.0, 12.0]), wanted, area_weight) == 0.0
+    assert energy.area(np.array([5.0, 12.0]), wanted, area_weight) == pytest.approx(4.0 * 1.0 / 2)
+    assert energy.area(np.array([20.0, 24.0]), wanted, area_weight) == pytest.approx(4.0)  # shares would say 0
     assert energy.area(np.array([20.0, 24.0]), wanted, np.array([1.0, 0.25])) == pytest.approx(4.0 * 1.25 / 2)
 
 

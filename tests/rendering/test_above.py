@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from pipeline.entities.asset import Asset, Material
-from pipeline.rendering.above import draw_roof, roof
+from pipeline.rendering.above import draw_from_above, visible_top
 from pipeline.rendering.boxes import box, solid_link
 from pipeline.rendering.palette import display
 from pipeline.rendering.pose import asset_triangles, placement_transform
 from pipeline.rendering.raster import render, top_down
-from pipeline.rendering.texture import face_colours
+from pipeline.rendering.surface_colour import face_colours
 
 NOWHERE = np.zeros((0, 3, 3)), np.zeros((0, 3), np.float32)
 
@@ -39,7 +39,7 @@ def table() -> Asset:
 
 
 def test_only_what_is_seen_is_kept():
-    kept = roof(table())
+    kept = visible_top(table())
     assert len(kept.faces) == 4  # two triangles of the top, two of the bowl
     assert kept.faces[..., 2].min() == pytest.approx(0.74, abs=1e-6)
 
@@ -53,7 +53,7 @@ def test_a_roof_is_drawn_as_the_whole_asset_is(yaw, scale):
     T = placement_transform(position, yaw, size)
     whole = render(view, faces @ T[:3, :3].T + T[:3, 3], display(face_colours(asset)), np.full(len(faces), 7, np.int32))
     frame = render(view, *NOWHERE, np.zeros(0, np.int32))
-    draw_roof(frame, view, asset, position, yaw, size, 7)
+    draw_from_above(frame, view, asset, position, yaw, size, 7)
     assert (frame.item == 7).mean() > 0.08
     assert (frame.item != whole.item).mean() < 2e-3  # along edges, where a pixel's centre lies on one
     both = (frame.item == 7) & (whole.item == 7)

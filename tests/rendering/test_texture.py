@@ -9,7 +9,7 @@ from PIL import Image
 from pipeline.entities.asset import Asset, Material, Mesh
 from pipeline.rendering.boxes import solid_link
 from pipeline.rendering.palette import display
-from pipeline.rendering.texture import LINEAR, face_colours
+from pipeline.rendering.surface_colour import LINEAR, face_colours
 
 
 def quilt(blob):

@@ -7,8 +7,9 @@ import numpy as np
 import shapely
 
 from pipeline.entities.plan import Plan, Room
-from pipeline.floorplan.draw.elements import bounds, label_point, on_level, storeys
+from pipeline.floorplan.draw.elements import bounds, label_point, on_level
 from pipeline.floorplan.program.defaults import OUTSIDE
+from pipeline.geometry.walls import levels
 
 MARGIN = 0.2  # around the outer walls [m]
 REACH = 0.175  # from inner wall faces to where a wall is drawn [m]
@@ -22,7 +23,7 @@ def terminal(plan: Plan, columns: int = 76) -> str:
     down = 2 * across
     width, height = columns + 1, math.ceil((y1 - y0) / down) + 1
     text = ""
-    for level in storeys(plan):
+    for level in levels(plan):
         rooms = on_level(plan, level)
         owner = _room_raster(rooms, x0 + across * (np.arange(width + 1) - 0.5), y1 - down * (np.arange(height + 1) - 0.5))
         canvas = [[_box(owner, i, j) for j in range(width)] for i in range(height)]
@@ -43,7 +44,7 @@ def terminal(plan: Plan, columns: int = 76) -> str:
                 for d, letter in enumerate(line):
                     if 0 <= i + k < height and start + d < width and canvas[i + k][start + d] == " ":
                         canvas[i + k][start + d] = letter
-        title = f"level {level}\n" if len(storeys(plan)) > 1 else ""
+        title = f"level {level}\n" if len(levels(plan)) > 1 else ""
         text += title + "\n".join("".join(row).rstrip() for row in canvas).strip("\n") + "\n"
     inside = sum(r.area for r in plan.rooms if r.type not in OUTSIDE)
     more = "".join(f" and {r.room_id} {r.area:.1f} m²" for r in plan.rooms if r.type in OUTSIDE)

@@ -31,16 +31,14 @@ def svg(plan: Plan, scale: float = 60.0) -> str:
             edge = f' stroke="{mark.edge}" stroke-width="1"' if mark.edge else ""
             lines.append(f'<path d="{path}" fill="{mark.fill}" fill-rule="evenodd"{edge}/>')
         elif isinstance(mark, Line):
-            lines.append(
-                f'<polyline points="{text(mark.points + shift)}" fill="none" stroke="{mark.colour}" stroke-width="{mark.width * scale:.1f}"/>'
-            )
+            stroke = f'stroke="{mark.colour}" stroke-width="{mark.width * scale:.1f}"'
+            lines.append(f'<polyline points="{text(mark.points + shift)}" fill="none" {stroke}/>')
         else:
             x, y = (mark.at[0] + shift[0]) * scale, (height - (mark.at[1] + shift[1])) * scale
             turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if mark.turned else ""
             size = mark.size * scale
-            lines.append(
-                f'<text x="{x:.1f}" y="{y + 0.35 * size:.1f}" font-size="{size:.1f}" fill="{mark.colour}"{turn}>{escape(mark.text)}</text>'
-            )
+            place = f'x="{x:.1f}" y="{y + 0.35 * size:.1f}" font-size="{size:.1f}"'
+            lines.append(f'<text {place} fill="{mark.colour}"{turn}>{escape(mark.text)}</text>')
     return "\n".join([*lines, "</g></svg>"]) + "\n"
 
 

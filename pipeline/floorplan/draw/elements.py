@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pipeline.entities.plan import Opening, Plan, Room
 from pipeline.geometry.stairs import visible_steps
+from pipeline.geometry.walls import levels
 
 COLOURS = {
     "living_room": "#f6e8c4", "family_room": "#f6e8c4", "studio_room": "#f6e8c4", "kitchen": "#f4cfae", "dining_room": "#f3dcca",
@@ -58,11 +59,6 @@ class Words:
 Mark = Area | Line | Words
 
 
-def storeys(plan: Plan) -> list[int]:
-    """Return the storeys, lowest first."""
-    return list(range(max(r.level for r in plan.rooms) + 1))
-
-
 def on_level(plan: Plan, level: int) -> list[Room]:
     """Return the rooms of a storey; a staircase stands on every storey from its own upwards."""
     return [r for r in plan.rooms if level in plan.levels_of(r)]
@@ -79,7 +75,7 @@ def marks(plan: Plan) -> tuple[list[tuple[Mark, Points]], float, float]:
     """Return the marks, what lies below first, each with its shift on the sheet, and the sheet's width and height [m]; its lower left corner is the origin."""
     x0, y0, x1, y1 = bounds(plan)
     step = x1 - x0 + GAP
-    shifts = [np.array([MARGIN - x0 + level * step, MARGIN - y0]) for level in storeys(plan)]
+    shifts = [np.array([MARGIN - x0 + level * step, MARGIN - y0]) for level in levels(plan)]
     elements = [(mark, shift) for level, shift in enumerate(shifts) for mark in _storey(plan, level)]
     return elements, len(shifts) * step - GAP + 2 * MARGIN, y1 - y0 + 2 * MARGIN
 
@@ -102,7 +98,7 @@ def _storey(plan: Plan, level: int) -> Iterator[Mark]:
             continue  # its steps say what it is
         yield from _label(room, [o for o in openings if room.room_id in o.rooms], plan)
     yield from _dimensions(whole.bounds)
-    if len(storeys(plan)) > 1:
+    if len(levels(plan)) > 1:
         yield Words(f"level {level}", (float(whole.bounds[0]) + 0.5, float(whole.bounds[1]) - AWAY - 0.22), 0.26, FAINT)
 
 
@@ -113,11 +109,8 @@ def _stairs(plan: Plan, level: int) -> Iterator[Mark]:
             yield Line(np.vstack([step.polygon, step.polygon[:1]]), FAINT)
     for room in on_level(plan, level):
         inside = shapely.Polygon(room.polygon)
-        flight = [
-            s
-            for s in visible_steps(plan, level)
-            if s.kind == "step" and s.top > 0.0 and inside.contains(shapely.Polygon(s.polygon).centroid)
-        ]
+        rising = [s for s in visible_steps(plan, level) if s.kind == "step" and s.top > 0.0]
+        flight = [s for s in rising if inside.contains(shapely.Polygon(s.polygon).centroid)]
         if flight:
             walk = np.array([s.polygon.mean(axis=0) for s in flight])
             yield Line(walk, INK, 0.02)
@@ -130,7 +123,7 @@ def _arrow(tip: Points, along: Points, size: float) -> Points:
     return np.array([tip + 0.6 * size * ahead, tip - 0.4 * size * ahead + 0.4 * size * side, tip - 0.4 * size * ahead - 0.4 * size * side])
 
 
-def hole(plan: Plan, opening: Opening) -> Points:
+def clearance(plan: Plan, opening: Opening) -> Points:
     """Return the rectangle (4, 2) that an opening cuts out of its wall."""
     p, q = opening.segment
     along = (q - p) / np.linalg.norm(q - p)
@@ -155,7 +148,7 @@ def leaf(plan: Plan, opening: Opening) -> tuple[Points, Points] | None:
 
 
 def _opening(plan: Plan, opening: Opening, rooms: Sequence[Room]) -> Iterator[Mark]:
-    around = hole(plan, opening)
+    around = clearance(plan, opening)
     types = {r.room_id: r.type for r in rooms}
     if opening.kind == "window":
         yield Area((around,), "#ffffff", WALL)
@@ -204,12 +197,9 @@ def _text_block(lines: Sequence[str], at: tuple[float, float], size: float) -> I
 def _place(room: Room, free: shapely.Geometry, width: float, height: float) -> tuple[float, float] | None:
     """Return the middle of a free box of that size nearest to the room's middle."""
     x0, y0, x1, y1 = shapely.Polygon(room.polygon).bounds
-    xs, ys = (
-        a.ravel()
-        for a in np.meshgrid(np.arange(x0 + width / 2, x1 - width / 2 + 1e-9, 0.1), np.arange(y0 + height / 2, y1 - height / 2 + 1e-9, 0.1))
-    )
+    columns, rows = np.arange(x0 + width / 2, x1 - width / 2 + 1e-9, 0.1), np.arange(y0 + height / 2, y1 - height / 2 + 1e-9, 0.1)
     middle = label_point(room)
-    xs, ys = np.append(xs, middle[0]), np.append(ys, middle[1])
+    xs, ys = (np.append(places, at) for places, at in zip(np.meshgrid(columns, rows), middle, strict=True))
     shapely.prepare(free)
     fits = shapely.contains(free, shapely.box(xs - width / 2, ys - height / 2, xs + width / 2, ys + height / 2))
     if not fits.any():
@@ -232,9 +222,7 @@ def _dimensions(around: Sequence[float]) -> Iterator[Mark]:
     low, left, tick = y0 - AWAY, x0 - AWAY, 0.1
     yield Line(np.array([[x0, low], [x1, low]]), FAINT)
     yield Line(np.array([[left, y0], [left, y1]]), FAINT)
-    for x in (x0, x1):
-        yield Line(np.array([[x - tick, low - tick], [x + tick, low + tick]]), FAINT)
-    for y in (y0, y1):
-        yield Line(np.array([[left - tick, y - tick], [left + tick, y + tick]]), FAINT)
+    for x, y in ((x0, low), (x1, low), (left, y0), (left, y1)):
+        yield Line(np.array([[x - tick, y - tick], [x + tick, y + tick]]), FAINT)
     yield Words(f"{x1 - x0:.2f} m", ((x0 + x1) / 2, low - 0.22), 0.2, "#5c5f64")
     yield Words(f"{y1 - y0:.2f} m", (left - 0.22, (y0 + y1) / 2), 0.2, "#5c5f64", turned=True)

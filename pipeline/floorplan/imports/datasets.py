@@ -78,10 +78,10 @@ def procthor_sketch(document: Mapping[str, Any]) -> Sketch:
         for i, r in zip(said, records, strict=True)
     ]
     walls = {str(w.get("id", "")): w for w in _dicts(document, "walls")}
-    tops = [float(_points(w.get("polygon"), k)[:, 1].max()) for k, w in walls.items() if w.get("polygon")]
-    if tops and 1.8 <= max(tops) <= 8.0:
+    top = max((float(_points(w.get("polygon"), k)[:, 1].max()) for k, w in walls.items() if w.get("polygon")), default=0.0)
+    if 1.8 <= top <= 8.0:
         for room in rooms:
-            room.height = round(max(tops), 3)
+            room.height = round(top, 3)
     sketch = Sketch(rooms, [], "centre", units="m", foreign=True)
     for number, record in enumerate(doors):
         frame = "frame" in str(record.get("assetId", "")).lower() and not record.get("openable", False)
@@ -115,11 +115,10 @@ def _opening(
         raise ContentError(f"ProcTHOR house: {name} names no wall or no room of the house", REMEDY)
     ends = _foot(walls[key], key)
     along = (ends[1] - ends[0]) / max(float(np.linalg.norm(ends[1] - ends[0])), 1e-9)
-    hole = record.get("holePolygon")
-    box = record.get("boundingBox")
-    if isinstance(box, dict) and hole is None:
-        hole = [box.get("min"), box.get("max")]
-    corners = _points(hole, name)
+    outline, box = record.get("holePolygon"), record.get("boundingBox")
+    if isinstance(box, dict) and outline is None:
+        outline = [box.get("min"), box.get("max")]
+    corners = _points(outline, name)
     (low, bottom), (high, top) = corners[:, :2].min(axis=0), corners[:, :2].max(axis=0)
     segment = np.array([ends[0] + low * along, ends[0] + high * along])
     sill = round(float(bottom), 4) if kind == "window" else 0.0

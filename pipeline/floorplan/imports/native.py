@@ -91,20 +91,18 @@ def native_sketch(document: object) -> Sketch:
     if read.version != VERSION:
         raise ContentError(f"plan document of version {read.version}", f"this sfgen reads version {VERSION}")
     entries = _openings(read)
-    _count(len(read.rooms), MAX_ROOMS, "rooms")
-    _count(len(entries), MAX_OPENINGS, "openings")
+    for count, most, what in ((len(read.rooms), MAX_ROOMS, "rooms"), (len(entries), MAX_OPENINGS, "openings")):
+        if count > most:
+            raise refuse(f"it has {count} {what}; at most {most} are read")
     if not read.rooms:
         raise refuse("it has no rooms")
     if any(len(r.polygon) > MAX_CORNERS for r in read.rooms):
         raise refuse(f"a room has more than {MAX_CORNERS} corners")
-    said = [r.id or r.type for r in read.rooms]
-    ids = identifiers(said, "room")
-    named: dict[str, str] = {}
+    ids = identifiers([r.id or r.type for r in read.rooms], "room")
     twice = {r.id for k, r in enumerate(read.rooms) if r.id and r.id in {x.id for x in read.rooms[:k]}}
     if twice:
         raise refuse(f"two rooms are called {min(twice)[:40]!r}", "give each room an id of its own")
-    for room, name in zip(read.rooms, ids, strict=True):
-        named[room.id or name] = name
+    named = {room.id or name: name for room, name in zip(read.rooms, ids, strict=True)}
     rooms = [
         SketchRoom(name, r.type, np.array(r.polygon, float).reshape(-1, 2), r.level, r.height, r.role, tuple(r.functions))
         for name, r in zip(ids, read.rooms, strict=True)
@@ -123,19 +121,12 @@ def native_sketch(document: object) -> Sketch:
     return sketch
 
 
-def _count(count: int, most: int, what: str) -> None:
-    if count > most:
-        raise refuse(f"it has {count} {what}; at most {most} are read")
-
-
 def _openings(read: PlanIn) -> list[tuple[OpeningIn, OpeningKind]]:
-    entries: list[tuple[OpeningIn, OpeningKind]] = []
-    for number, entry in enumerate(read.openings or ()):
-        if entry.kind is None:
-            raise ContentError(f"plan document: openings.{number}.kind: Field required", FORMAT)
-        entries.append((entry, entry.kind))
-    entries += [(entry, entry.kind or "door") for entry in read.doors or ()]
-    return entries + [(entry, entry.kind or "window") for entry in read.windows]
+    without = next((k for k, entry in enumerate(read.openings or ()) if entry.kind is None), None)
+    if without is not None:
+        raise ContentError(f"plan document: openings.{without}.kind: Field required", FORMAT)
+    entries = [*(read.openings or ()), *(read.doors or ())]
+    return [(entry, entry.kind or "door") for entry in entries] + [(entry, entry.kind or "window") for entry in read.windows]
 
 
 def _opening(entry: OpeningIn, kind: OpeningKind, name: str, named: dict[str, str], levels: dict[str, int]) -> SketchOpening:

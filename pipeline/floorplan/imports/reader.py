@@ -13,13 +13,13 @@ from typing import Any
 from pipeline.entities.plan import Opening, Plan, Room, hops
 from pipeline.errors import ContentError, UsageError
 from pipeline.floorplan.imports.datasets import front_sketch, is_front, is_procthor, procthor_sketch
-from pipeline.floorplan.imports.fitting import Fitted, fit, hang, put_door
 from pipeline.floorplan.imports.native import native_sketch
-from pipeline.floorplan.imports.rings import apart, clean_rings, shrink, to_metres
+from pipeline.floorplan.imports.rings import clean_rings, shrink_rooms, to_metres, trim_overlaps
 from pipeline.floorplan.imports.sketch import Repair, Sketch, refuse
 from pipeline.floorplan.imports.thresholds import cut_back, put_walls
 from pipeline.floorplan.imports.types import resolve_types
-from pipeline.floorplan.imports.walls import TOUCH, Stretch, stretches, touching_share
+from pipeline.floorplan.imports.wall_openings import Fitted, fit_openings, hang_leaves, put_door
+from pipeline.floorplan.imports.wall_stretches import TOUCH, Stretch, stretches, touching_share
 from pipeline.floorplan.program.defaults import INTO, OUTSIDE
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, Link, Range, RoomReq, Shell
 from pipeline.sources.guarded import Folder, parse_json
@@ -114,7 +114,7 @@ def _build_plan(sketch: Sketch) -> Plan:
     outer = _thickness(sketch, "outer_wall", OUTER)
     if sketch.foreign and sketch.faces == "inner":
         cut_back(sketch, inner, outer)
-    apart(sketch)
+    trim_overlaps(sketch)
     if sketch.foreign and sketch.faces == "inner":
         put_walls(sketch, inner)
     _to_inner_faces(sketch, inner)
@@ -122,29 +122,32 @@ def _build_plan(sketch: Sketch) -> Plan:
     levels = sorted({r.level for r in rooms})
     if levels != list(range(len(levels))):
         raise refuse(f"its storeys are {', '.join(map(str, levels))}; they count from 0 without gaps")
-    walls = [s for level in levels for s in stretches(storey(rooms, level), level, outer)]
-    widest = max((s.gap for s in walls if len(s.rooms) == 2), default=0.0)
+    walls = _walls(rooms, levels, outer)
+    widest = max((s.thickness for s in walls if len(s.rooms) == 2), default=0.0)
     if widest > 2 * outer:  # outside walls stand around every room: thinner ones would not meet between rooms
         outer = math.ceil(1000 * widest / 2) / 1000
-        sketch.repair(
-            "outer_wall", "plan", f"rooms are {widest:.2f} m apart: outside walls are taken as {outer:.3f} m thick, so that they meet"
-        )
-        walls = [s for level in levels for s in stretches(storey(rooms, level), level, outer)]
-    fitted = fit(sketch, rooms, walls)
+        text = f"rooms are {widest:.2f} m apart: outside walls are taken as {outer:.3f} m thick, so that they meet"
+        sketch.repair("outer_wall", "plan", text)
+        walls = _walls(rooms, levels, outer)
+    fitted = fit_openings(sketch, rooms, walls)
     _open_where_touching(sketch, walls, fitted)
     if sketch.foreign:
         _keep_main_part(sketch, rooms, walls, fitted)
     entrance = _entrance(sketch, rooms, walls, fitted)
     _join(sketch, rooms, walls, fitted, entrance)
-    gaps = [f.stretch.gap for f in fitted if len(f.stretch.rooms) == 2 and f.opening.kind != "window" and f.stretch.gap >= TOUCH]
-    inner = round(float(max(gaps, default=inner)), 4)
-    openings = hang(sketch, fitted, rooms, hops(_passages(fitted), entrance), max(inner, outer))
+    between = [f.stretch.thickness for f in fitted if len(f.stretch.rooms) == 2 and f.opening.kind != "window"]
+    inner = round(float(max((t for t in between if t >= TOUCH), default=inner)), 4)
+    openings = hang_leaves(sketch, fitted, rooms, hops(_passages(fitted), entrance), max(inner, outer))
     high = max(r.height for r in rooms)
     storeys = sketch.storey_height or max(STOREY, high + 0.3)
     if storeys < high + 0.05:
         sketch.repair("storey_height", "plan", f"{storeys:.2f} m is less than its rooms are high; {high + 0.3:.2f} m is taken")
         storeys = high + 0.3
     return Plan(tuple(rooms), tuple(openings), entrance, inner, outer, round(storeys, 3))
+
+
+def _walls(rooms: list[Room], levels: list[int], outer: float) -> list[Stretch]:
+    return [s for level in levels for s in stretches(storey(rooms, level), level, outer)]
 
 
 def storey(rooms: list[Room], level: int) -> list[Room]:
@@ -173,7 +176,7 @@ def _to_inner_faces(sketch: Sketch, inner: float) -> None:
         text = f"its rooms touch: corners are taken as walls' centre lines, walls are {inner:g} m thick"
     if faces == "centre":
         sketch.repair("centre_lines", "plan", text)
-        shrink(sketch, inner / 2)
+        shrink_rooms(sketch, inner / 2)
 
 
 def _open_where_touching(sketch: Sketch, walls: list[Stretch], fitted: list[Fitted]) -> None:
@@ -181,7 +184,7 @@ def _open_where_touching(sketch: Sketch, walls: list[Stretch], fitted: list[Fitt
     said = {frozenset(f.stretch.rooms) for f in fitted if f.opening.kind in PASSAGES}
     for stretch in walls:
         pair = frozenset(stretch.rooms)
-        if len(pair) == 2 and stretch.gap < TOUCH and pair not in said and stretch.length >= 0.6:
+        if len(pair) == 2 and stretch.thickness < TOUCH and pair not in said and stretch.length >= 0.6:
             said.add(pair)
             opening = Opening(_fresh("open", fitted), "open", stretch.rooms, stretch.at(0.0, stretch.length), 2.4, level=stretch.level)
             fitted.append(Fitted(opening, stretch))
@@ -238,16 +241,14 @@ def _join(sketch: Sketch, rooms: list[Room], walls: list[Stretch], fitted: list[
             pairs.sort(key=lambda s: (_rank(kinds[next(r for r in s.rooms if r in reached)]), -round(s.length, 3)))
             door = next((f for s in pairs if (f := put_door(_fresh("door", fitted), s.rooms, [s], fitted))), None)
         if door is None:
-            area = {r.room_id: r.area for r in rooms}
-            if sketch.foreign and 2 * sum(area[r] for r in lost) <= sum(area.values()):
+            if sketch.foreign and 2 * sum(r.area for r in rooms if r.room_id in lost) <= sum(r.area for r in rooms):
                 _leave_out(sketch, rooms, fitted, lost, "nothing leads to it")
                 continue
             _explain(rooms, walls, lost)
             raise refuse(f"there is no way from {entrance} to {', '.join(lost)}", "add doors between them")
         fitted.append(door)
-        sketch.repair(
-            "door", door.opening.opening_id, f"no door leads to {' or '.join(set(door.opening.rooms) - reached.keys())}: one is put"
-        )
+        beyond = " or ".join(set(door.opening.rooms) - reached.keys())
+        sketch.repair("door", door.opening.opening_id, f"no door leads to {beyond}: one is put")
 
 
 def _leave_out(sketch: Sketch, rooms: list[Room], fitted: list[Fitted], lost: list[str], why: str) -> None:

@@ -94,9 +94,8 @@ def _ring(sketch: Sketch, room: SketchRoom) -> Floats:
         raise refuse(f"{name} has no area: its corners lie on a line")
     shape = shapely.Polygon(straight)
     if not shape.is_valid:
-        raise refuse(
-            f"the outline of {name} crosses or touches itself ({explain_validity(shape)})", "give its corners in order, once around"
-        )
+        message = f"the outline of {name} crosses or touches itself ({explain_validity(shape)})"
+        raise refuse(message, "give its corners in order, once around")
     if _signed_area(straight) < 0:
         straight = straight[::-1]
         sketch.repair("clockwise", name, "its corners run clockwise and are turned round")
@@ -120,7 +119,7 @@ def without_collinear(ring: Floats) -> Floats:
     return kept
 
 
-def apart(sketch: Sketch) -> None:
+def trim_overlaps(sketch: Sketch) -> None:
     """Trim rooms that overlap by less than SLIVER, stating it. Raises RefusedError for rooms that overlap by more.
 
     In a house of a dataset the later room gives way, however much it is, as long as one room is left of it.
@@ -148,7 +147,7 @@ def share_level(a: SketchRoom, b: SketchRoom) -> bool:
     return a.level == b.level or "staircase" in {a.type, b.type}
 
 
-def shrink(sketch: Sketch, by: float) -> None:
+def shrink_rooms(sketch: Sketch, by: float) -> None:
     """Move all walls `by` [m] into their rooms: from centre lines to inner faces."""
     for room in sketch.rooms:
         inner = shapely.Polygon(room.ring).buffer(-by, join_style="mitre", mitre_limit=10.0)

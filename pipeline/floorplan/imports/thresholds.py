@@ -1,7 +1,7 @@
 """Floors that reach into the walls under doors, as those of scanned and modelled houses do: cut back, and walls where a door asks for one."""
 
-import itertools
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ import shapely
 
 from pipeline.floorplan.imports.rings import LEAST_AREA, corners_of, without_collinear
 from pipeline.floorplan.imports.sketch import Floats, Sketch, SketchRoom
-from pipeline.floorplan.imports.walls import TOUCH, Stretch, stretches
+from pipeline.floorplan.imports.wall_stretches import TOUCH, Stretch, edges, stretches
 
 DEEPEST = 0.45  # [m] of a wall that a floor reaches into
 WIDER = 0.3  # [m] by which a threshold is wider than what is clear of its door, on each side
@@ -33,7 +33,7 @@ class Edge:
 def cut_back(sketch: Sketch, inner: float, outer: float) -> None:
     """Take what lies under the openings off the floors, stating it by room; `inner` and `outer` [m] are usual thicknesses of walls."""
     rooms = {room.room_id: room for room in sketch.rooms}
-    cut: dict[str, int] = {}
+    counts: Counter[str] = Counter()
     for opening in sketch.openings:
         if opening.kind == "window" or opening.segment is None:
             continue
@@ -41,11 +41,10 @@ def cut_back(sketch: Sketch, inner: float, outer: float) -> None:
             ring = _without_threshold(rooms[name].ring, opening.segment, outer if len(opening.rooms) == 1 else inner)
             if ring is not None:
                 rooms[name].ring = ring
-                cut[name] = cut.get(name, 0) + 1
-    for name, count in cut.items():
-        sketch.repair(
-            "threshold", name, f"its floor reaches into the wall under {count} opening{'s' * (count > 1)}: it is cut back to the wall"
-        )
+                counts[name] += 1
+    for name, count in counts.items():
+        under = f"{count} opening{'s' * (count > 1)}"
+        sketch.repair("threshold", name, f"its floor reaches into the wall under {under}: it is cut back to the wall")
 
 
 def _without_threshold(ring: Floats, segment: Floats, wall: float) -> Floats | None:
@@ -55,16 +54,12 @@ def _without_threshold(ring: Floats, segment: Floats, wall: float) -> Floats | N
     along = (b - a) / width
     across = np.array([-along[1], along[0]])
     for side in (1.0, -1.0):
-        edges = list(_beside(ring, middle, along, side * across))
-        for end in edges:
+        around = list(_beside(ring, middle, along, side * across))
+        for end in around:
             if end.low < -width / 2 - WIDER or end.high > width / 2 + WIDER or end.off < -HALFWAY or end.low > 0.0 or end.high < 0.0:
                 continue
-            mains = [
-                e
-                for e in edges
-                if STEP < end.off - e.off <= DEEPEST
-                and (end.low - NEXT < e.high <= end.low + STEP or end.high - STEP <= e.low < end.high + NEXT)
-            ]
+            next_to = [e for e in around if end.low - NEXT < e.high <= end.low + STEP or end.high - STEP <= e.low < end.high + NEXT]
+            mains = [e for e in next_to if STEP < end.off - e.off <= DEEPEST]
             if not mains and end.off < STEP:
                 continue
             # a door as wide as its room has no wall beside it that shows where the floor should end
@@ -77,8 +72,7 @@ def _without_threshold(ring: Floats, segment: Floats, wall: float) -> Floats | N
 
 def _beside(ring: Floats, middle: Floats, along: Floats, out: Floats) -> Iterator[Edge]:
     """Yield the edges of a counter-clockwise ring near an opening that run along it and have the outside towards `out`."""
-    for p, q in itertools.pairwise([*ring, ring[0]]):
-        way = (q - p) / np.linalg.norm(q - p)
+    for p, q, way in edges(ring):
         if abs(float(way @ out)) > PARALLEL or float(np.array([way[1], -way[0]]) @ out) < 0.0:
             continue
         off = float(((p + q) / 2 - middle) @ out)
@@ -104,11 +98,10 @@ def put_walls(sketch: Sketch, thickness: float) -> None:
         done.add(_mark(near))
         pair = [room for room in sketch.rooms if room.room_id in near.rooms]
         middle = near.start + near.length / 2 * near.along
-        moved = [_moved_in(room, middle, near, thickness / 2) for room in pair]
-        if any(ring is None for ring in moved):
+        rings = [ring for room in pair if (ring := _moved_in(room, middle, near, thickness / 2)) is not None]
+        if len(rings) < len(pair):
             continue
-        for room, ring in zip(pair, moved, strict=True):
-            assert ring is not None
+        for room, ring in zip(pair, rings, strict=True):
             room.ring = ring
         names = " and ".join(near.rooms)
         sketch.repair("wall", "plan", f"{names} touch with a wall between them: {100 * thickness:.0f} cm of their floors become that wall")
@@ -124,7 +117,7 @@ def _touching(sketch: Sketch) -> Iterator[Stretch]:
     known = [r.room() for r in sketch.rooms]
     fronts = [(set(o.rooms), o.segment) for o in sketch.openings if o.kind in OPEN and o.segment is not None]
     for stretch in stretches(known, 0, DEEPEST):
-        if len(stretch.rooms) == 2 and stretch.gap < TOUCH:
+        if len(stretch.rooms) == 2 and stretch.thickness < TOUCH:
             line = shapely.LineString(stretch.at(0.0, stretch.length))
             here = [s for rooms, s in fronts if rooms == set(stretch.rooms) and line.distance(shapely.Point(s.mean(axis=0))) <= DEEPEST]
             if sum(float(np.linalg.norm(s[1] - s[0])) for s in here) < stretch.length - WIDER:
@@ -133,10 +126,13 @@ def _touching(sketch: Sketch) -> Iterator[Stretch]:
 
 def _moved_in(room: SketchRoom, middle: Floats, near: Stretch, by: float) -> Floats | None:
     """Return a room's ring with the edge on a stretch moved `by` [m] into the room."""
-    for p, q in itertools.pairwise([*room.ring, room.ring[0]]):
-        way = (q - p) / np.linalg.norm(q - p)
+    for p, q, way in edges(room.ring):
         off, place = abs(float((p - middle) @ near.left)), float((middle - p) @ way)
-        if abs(float(way @ near.left)) < PARALLEL and off <= TOUCH + near.gap and -STEP <= place <= float(np.linalg.norm(q - p)) + STEP:
+        if (
+            abs(float(way @ near.left)) < PARALLEL
+            and off <= TOUCH + near.thickness
+            and -STEP <= place <= float(np.linalg.norm(q - p)) + STEP
+        ):
             inward = np.array([-way[1], way[0]])
             return _rest(room.ring, shapely.Polygon([p - 1e-3 * inward, q - 1e-3 * inward, q + by * inward, p + by * inward]))
     return None

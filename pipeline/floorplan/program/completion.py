@@ -4,10 +4,10 @@ from collections import Counter
 from collections.abc import Sequence
 
 from pipeline.floorplan.program.areas import with_areas
-from pipeline.floorplan.program.consistency import names, reach, storeys
+from pipeline.floorplan.program.consistency import check_names, check_storeys, reach
 from pipeline.floorplan.program.defaults import INTO
 from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, RoomReq, RoomType, Shell
-from pipeline.floorplan.program.furniture import allot, matching_categories, spread
+from pipeline.floorplan.program.furniture import allot_pieces, matching_categories, spread
 from pipeline.floorplan.program.links import connect, distances, is_forbidden, nearness, resolve
 
 UPSTAIRS = {"bedroom", "bathroom", "playroom"}
@@ -22,14 +22,13 @@ HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
 def complete(program: FloorProgram) -> FloorProgram:
     """Return the program with every gap filled. Completing twice changes nothing."""
     program = program.model_copy(update={"rooms": _expand(program), "shell": _shell(program)})
-    program = program.model_copy(update={"rooms": _add_missing(program)})
-    program = program.model_copy(update={"rooms": _storeys(program)})
-    program = program.model_copy(update={"rooms": _add_circulation(program)})
-    names(program)
-    storeys(program)
+    for fill in (_add_missing, _storeys, _add_circulation):
+        program = program.model_copy(update={"rooms": fill(program)})
+    check_names(program)
+    check_storeys(program)
     program = _join(program)
     program = _make_irregular(program.model_copy(update={"entrance": _entrance(program)}))
-    return allot(with_areas(_with_dining(spread(program))))
+    return allot_pieces(with_areas(_with_dining(spread(program))))
 
 
 def _with_dining(program: FloorProgram) -> FloorProgram:
@@ -71,11 +70,9 @@ def _expand(program: FloorProgram) -> tuple[RoomReq, ...]:
 def _shell(program: FloorProgram) -> Shell:
     """Return the shell; what is usual of it gives way where outside walls would be thinner than those between rooms."""
     shell, usual = program.shell, Shell()
-    if shell.outer_wall < shell.inner_wall:
-        if shell.outer_wall == usual.outer_wall:
-            return shell.model_copy(update={"outer_wall": shell.inner_wall})
-        if shell.inner_wall == usual.inner_wall:
-            return shell.model_copy(update={"inner_wall": shell.outer_wall})
+    for name, other in (("outer_wall", "inner_wall"), ("inner_wall", "outer_wall")):
+        if shell.outer_wall < shell.inner_wall and getattr(shell, name) == getattr(usual, name):
+            return shell.model_copy(update={name: getattr(shell, other)})
     return shell
 
 
@@ -109,10 +106,8 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
                 add("studio_room", "studio")
             else:
                 add("living_room", "living")
-        lived = [r for r in rooms if r.type in {"living_room", "family_room", "studio_room"}]
-        if not types & {"bedroom", "studio_room"} and not any(
-            r.stated for r in lived
-        ):  # one that an open kitchen has brought is no bedroom
+        # a living room that an open kitchen has brought is no bedroom
+        if not types & {"bedroom", "studio_room"} and not any(r.stated for r in rooms if r.type in {"living_room", "family_room"}):
             add("bedroom", "bed")
         if "kitchen" not in types and "cooking" not in functions:
             add("kitchen", "kitchen")

@@ -33,7 +33,7 @@ Fault = tuple[str, str, list[Evidence]]  # what cannot be, what helps, and the w
 
 def check(program: FloorProgram) -> None:
     """Raise ImpossibleError (a RefusedError) for a program that no plan can meet."""
-    names(program)
+    check_names(program)
     for faults in (_shell, _forbidden, _areas, _degrees, _ways, _distances, _corners, _planar):
         for fault in faults(program):
             raise ImpossibleError(*fault)
@@ -51,7 +51,7 @@ def evidence_for(program: FloorProgram, *fields: str) -> list[Evidence]:
     return [e for e in program.evidence if any(e.field == f or e.field.startswith(f + ".") for f in fields)]
 
 
-def names(program: FloorProgram) -> None:
+def check_names(program: FloorProgram) -> None:
     """Raise ImpossibleError when ids repeat or a selector names no room."""
     twice = [name for name, count in Counter(r.id for r in program.rooms).items() if count > 1]
     if twice:
@@ -67,7 +67,7 @@ def names(program: FloorProgram) -> None:
             raise ImpossibleError(f"no room is called {selector!r}", f"rooms are {', '.join(r.id for r in program.rooms)}")
 
 
-def storeys(program: FloorProgram) -> None:
+def check_storeys(program: FloorProgram) -> None:
     """Raise ImpossibleError when a storey has no room, or a stated link would join rooms of two storeys; levels are filled in."""
     for level in range(program.storeys):
         if not any(r.level == level and r.type != "staircase" for r in program.rooms):

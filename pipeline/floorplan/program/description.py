@@ -24,7 +24,8 @@ def describe(program: FloorProgram) -> str:
         beds = counts.pop("bedroom", 0)
         kind = "studio" if "studio_room" in counts else ("home" if not beds else f"{_number(beds)}-bedroom home")
         rest = [_phrase(name, count) for name, count in counts.items() if name != "studio_room"]
-        text = f"{_article(kind)} {kind} of {area:.0f} m²"
+        article = "An" if kind[0] in "aeiou" and not kind.startswith("one") else "A"
+        text = f"{article} {kind} of {area:.0f} m²"
         if rest:
             text += " with " + _list(rest)
         missing = _missing(counts, beds)
@@ -35,21 +36,19 @@ def describe(program: FloorProgram) -> str:
         for level, where in zip(range(program.storeys), ("downstairs", "upstairs", "on the second floor"), strict=False):
             counts = Counter(r.type for r in program.rooms if r.level == level)
             text += f"; {where}: " + _list([_phrase(name, count) for name, count in counts.items()])
-    fronts = [{_type(program, k.a), _type(program, k.b)} for k in program.links if k.kind == "open"]
+    fronts = [{program.select(i)[0].type for i in k.ends} for k in program.links if k.kind == "open"]
     named = [f"the {_one(min(f))} open to the {_one(max(f))}" for f in fronts if "staircase" not in f]
     return text + "".join(f"; {n}" for n in named[:1]) + "".join(f", {n}" for n in named[1:]) + "."
 
 
 def _missing(counts: Counter[RoomType], beds: int) -> list[str]:
     """Return what a reader would take for granted."""
-    missing = []
-    if beds and not counts["kitchen"]:
-        missing.append("a kitchen of its own")
-    if beds and not counts["living_room"]:
-        missing.append("a living room")
-    if beds > 1 and not counts["hallway"] and not counts["entry"]:
-        missing.append("a hallway")
-    return missing
+    needed = {
+        "a kitchen of its own": beds and not counts["kitchen"],
+        "a living room": beds and not counts["living_room"],
+        "a hallway": beds > 1 and not counts["hallway"] and not counts["entry"],
+    }
+    return [room for room, lacks in needed.items() if lacks]
 
 
 def _list(parts: list[str]) -> str:
@@ -58,10 +57,6 @@ def _list(parts: list[str]) -> str:
 
 def _number(count: int) -> str:
     return NUMBERS[count] if count < len(NUMBERS) else str(count)
-
-
-def _article(noun: str) -> str:
-    return "An" if noun[0] in "aeiou" and not noun.startswith("one") else "A"
 
 
 def _one(kind: str) -> str:
@@ -75,22 +70,20 @@ def _phrase(kind: str, count: int) -> str:
     return f"{_number(count)} {PLURALS.get(kind, one + 's')}"
 
 
-def _type(program: FloorProgram, room_id: str) -> str:
-    return program.select(room_id)[0].type
-
-
 def assumptions(program: FloorProgram) -> list[dict[str, str]]:
     """Return {field, text} for each kind of default in a completed program; areas with their factor on what is usual.
 
     Every room, area, link, way in, outline and shell that the request left open is named; `stated: false` marks them in the program.
     """
+    outline, shell = program.footprint, program.shell
+    walls = f"walls {shell.inner_wall:g} m inside, {shell.outer_wall:g} m outside, ceilings {shell.ceiling:g} m"
     texts = {
-        "rooms": _rooms(program),
+        "rooms": ", ".join(f"{r.id} ({r.type})" for r in program.rooms if not r.stated),
         "areas": _areas(program),
         "links": ", ".join(f"{k.a}{SIGNS.get(k.kind, '-')}{k.b}" for k in program.links if not k.stated),
         "entrance": "" if program.entrance.stated else f"into {program.entrance.into}",
-        "outline": _outline(program),
-        "shell": _shell(program),
+        "outline": "" if outline.stated else f"{outline.shape}, sides at most {outline.max_aspect:g} : 1",
+        "shell": "" if shell.stated else walls,
     }
     return [{"field": field, "text": text} for field, text in texts.items() if text]
 
@@ -109,10 +102,6 @@ def notes(program: FloorProgram, assumed: Sequence[Mapping[str, str]]) -> str:
     left_out = {"not built here": program.unbuilt, "not understood": program.unparsed}
     lines = (f"{why}: {', '.join(s.text for s in spans)}\n" for why, spans in left_out.items() if spans)
     return format_assumptions(assumed) + "".join(lines)
-
-
-def _rooms(program: FloorProgram) -> str:
-    return ", ".join(f"{r.id} ({r.type})" for r in program.rooms if not r.stated)
 
 
 def _areas(program: FloorProgram) -> str:
@@ -139,14 +128,3 @@ def _area_reasons(program: FloorProgram) -> Iterator[str]:
         yield "bounds"
     if program.storeys > 1:
         yield "the storey above or below"
-
-
-def _outline(program: FloorProgram) -> str:
-    shape = program.footprint
-    return "" if shape.stated else f"{shape.shape}, sides at most {shape.max_aspect:g} : 1"
-
-
-def _shell(program: FloorProgram) -> str:
-    shell = program.shell
-    text = f"walls {shell.inner_wall:g} m inside, {shell.outer_wall:g} m outside, ceilings {shell.ceiling:g} m"
-    return "" if shell.stated else text

@@ -210,22 +210,19 @@ class Entrance(Model):
     stated: bool = False
 
 
-class Evidence(Model):
-    """Words `text` = prompt[start:end] that `field` was read from."""
-
-    start: Annotated[int, Field(ge=0)]
-    end: Annotated[int, Field(ge=0)]
-    text: str
-    field: str
-    source: Literal["rule", "llm"] = "rule"
-
-
 class Span(Model):
     """Words of the prompt of which nothing was made."""
 
     start: Annotated[int, Field(ge=0)]
     end: Annotated[int, Field(ge=0)]
     text: str
+
+
+class Evidence(Span):
+    """Words `text` = prompt[start:end] that `field` was read from."""
+
+    field: str
+    source: Literal["rule", "llm"] = "rule"
 
 
 class FloorProgram(Model):

@@ -91,12 +91,11 @@ def spread(program: FloorProgram) -> FloorProgram:
         put[things.category] = home
         own = Furniture(counts=(things,))
         rooms[home] = rooms[home].model_copy(update={"furniture": merge_wishes(rooms[home].furniture, own)})
-    return program.model_copy(
-        update={"rooms": tuple(rooms), "furniture": everywhere.model_copy(update={"counts": (*everywhere.counts, *kept)})}
-    )
+    left = everywhere.model_copy(update={"counts": (*everywhere.counts, *kept)})
+    return program.model_copy(update={"rooms": tuple(rooms), "furniture": left})
 
 
-def allot(program: FloorProgram) -> FloorProgram:
+def allot_pieces(program: FloorProgram) -> FloorProgram:
     """Share the home's number of pieces, and of pieces that open, among its rooms by their areas; what a room states stays."""
     wish, rooms = program.furniture, list(program.rooms)
     bound = wish.most if wish.most is not None else wish.least
@@ -178,11 +177,8 @@ def _sums(room: RoomReq, wish: Furniture, here: str) -> Iterable[tuple[str, str,
         for b in wish.counts:
             inside = a is not b and set(members(a.category)) <= set(members(b.category))
             if inside and b.max is not None and a.min > b.max:
-                yield (
-                    f"{room.id} is to have {a.min} {plain(a.category)} and at most {b.max} {plain(b.category)}",
-                    "keep one of the two",
-                    fields,
-                )
+                message = f"{room.id} is to have {a.min} {plain(a.category)} and at most {b.max} {plain(b.category)}"
+                yield message, "keep one of the two", fields
     area = room.area.max or (room.area.target or 0.0) * SLACK
     pieces = max(least, wish.least or 0)
     share = CROWDED - (wish.walkable or 0.0)

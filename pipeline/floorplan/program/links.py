@@ -7,7 +7,7 @@ from pipeline.entities.plan import hops
 from pipeline.floorplan.program.defaults import DEFAULTS, HUBS
 from pipeline.floorplan.program.floor_program import FloorProgram, Link, Relation, RoomReq
 
-ANY_HUB = ("hallway", "entry", "living_room", "family_room", "studio_room", "dining_room", "kitchen", "office", "staircase")
+ANY_HUB = (*HUBS, "staircase")
 # Who stands for a group of joined rooms when the group is attached to the rest.
 FRONT = (*HUBS, "library", "media_room", "playroom", "gym", "meeting_room", "sunroom", "utility", "bedroom", "storage", "closet")
 BUDGET = 600  # sets of links that are tried before `hops` relations are given up
@@ -199,7 +199,8 @@ def _host_links(program: FloorProgram, front: RoomReq, main: frozenset[str], lin
         hosts = [h for h in hosts if not _is_full(program, h, links) and not is_forbidden(program, h, front)]
         hosts = [h for h in hosts if h.type != "hallway" or h.level == front.level or front.type == "staircase"] or hosts
         if wanted == "bedroom" and front.type in {"closet", "bathroom"}:
-            hosts = [h for h in hosts if not _has(program, h, front.type, links)] or hosts
+            taken = {k.beyond(r.id) for k in links for r in program.rooms if r.type == front.type}
+            hosts = [h for h in hosts if h.id not in taken] or hosts
         if wanted == "hallway":
             hosts = sorted(hosts, key=lambda h: _load(h, links))
         hosts = sorted(hosts, key=lambda h: h.id not in beside)
@@ -214,11 +215,6 @@ def _opening(host: RoomReq, front: RoomReq) -> Link:
 
 def _load(room: RoomReq, links: Sequence[Link]) -> int:
     return sum(room.id in k.ends for k in links)
-
-
-def _has(program: FloorProgram, host: RoomReq, kind: str, links: Sequence[Link]) -> bool:
-    mates = {k.beyond(host.id) for k in links}
-    return any(r.id in mates for r in program.rooms if r.type == kind)
 
 
 def _is_full(program: FloorProgram, room: RoomReq, links: Sequence[Link]) -> bool:
@@ -237,9 +233,8 @@ def is_forbidden(program: FloorProgram, a: RoomReq, b: RoomReq) -> bool:
         return other is not None and _covers(program, one, b) and _covers(program, other, a)
 
     apart = [f for f in program.forbids if f.what in {"adjacent", "connected"} and f.b]
-    return any(hits(f.a, f.b) or hits(f.b or "", f.a) for f in apart) or any(
-        hits(f.a, f.avoid) for f in program.forbids if f.what == "through"
-    )
+    ways = [f for f in program.forbids if f.what == "through"]
+    return any(hits(f.a, f.b) or hits(f.b or "", f.a) for f in apart) or any(hits(f.a, f.avoid) for f in ways)
 
 
 def _covers(program: FloorProgram, selector: str, room: RoomReq) -> bool:

@@ -58,10 +58,8 @@ def _corners(plan: Plan) -> Iterator[Corner]:
     for room in plan.rooms:
         others = [shapes[r.room_id] for r in plan.rooms if r is not room and (r.level == room.level or r.type == "staircase")]
         rest = shapely.union_all(others)
-        for k, (before, here, after) in enumerate(
-            zip(np.roll(room.polygon, 1, axis=0), room.polygon, np.roll(room.polygon, -1, axis=0), strict=True)
-        ):
-            one, two = here - before, after - here
+        ones, twos = room.polygon - np.roll(room.polygon, 1, axis=0), np.roll(room.polygon, -1, axis=0) - room.polygon
+        for k, (here, one, two) in enumerate(zip(room.polygon, ones, twos, strict=True)):
             if one[0] * two[1] - one[1] * two[0] <= 0:
                 continue
             near = [shapely.LineString([here, here + min(LEGS[0], np.hypot(*way)) * way / np.hypot(*way)]) for way in (-one, two)]

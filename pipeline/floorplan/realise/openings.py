@@ -120,9 +120,8 @@ def place(
     wide = [k for k in program.links if k.kind in {"open", "portal"}]
     narrow = [k for k in program.links if k.kind == "door"]
     for link in wide:
-        if not _wide(
-            site, [r for r in runs if set(r.rooms) == link.ends], link.kind, any(requests[i].type == "staircase" for i in link.ends)
-        ):
+        stairs = any(requests[i].type == "staircase" for i in link.ends)
+        if not _wide(site, [r for r in runs if set(r.rooms) == link.ends], link.kind, stairs):
             return None
     if not _entrance(program, site, runs, rng):
         return None
@@ -131,8 +130,7 @@ def place(
     for link in narrow:
         between = [r for r in runs if set(r.rooms) == link.ends]
         far, near = (link.a, link.b) if depth[link.a] >= depth[link.b] else (link.b, link.a)
-        width = BALCONY_WIDTH if "balcony" in {requests[far].type, requests[near].type} else program.accessibility.min_door
-        width = max(width, program.accessibility.min_door)
+        width = max(BALCONY_WIDTH if "balcony" in {requests[far].type, requests[near].type} else 0.0, program.accessibility.min_door)
         roomy = min(requests[far].area.target or 0, requests[near].area.target or 0) >= 9.0
         widths = ([0.9] if roomy and width < 0.9 else []) + [width]
         sides = (near, far) if requests[far].type in KEPT_FREE else (far, near)
@@ -160,9 +158,8 @@ def _wide(site: Site, between: Sequence[Run], kind: str, stairs: bool) -> bool:
 def _entrance(program: FloorProgram, site: Site, runs: Sequence[Run], rng: np.random.Generator) -> bool:
     """Place the entrance, a garage's gate, and outside doors of rooms that have one of their own."""
     into = program.entrance.into or ""
-    own = {r.id for s in program.entrance.separate for r in program.select(s)} | {
-        r.id for r in program.rooms if r.exterior == "door" and r.type != "garage"
-    }
+    own = {r.id for s in program.entrance.separate for r in program.select(s)}
+    own |= {r.id for r in program.rooms if r.exterior == "door" and r.type != "garage"}
     width = max(ENTRANCE_WIDTH, program.accessibility.min_door)
     walls = [r for r in runs if r.rooms == (into,) and r.level == 0]
     if not _door(site, walls, "entrance", width, into, 2.1, rng):

@@ -11,7 +11,7 @@ from pipeline.floorplan.realise import wall_lines
 from pipeline.floorplan.realise.chamfers import chamfer_corners
 from pipeline.floorplan.realise.openings import Run, place
 from pipeline.floorplan.search.grid import Halves, Labels
-from pipeline.floorplan.search.storeys import EDGE, UNIT, Storey
+from pipeline.floorplan.search.storeys import EDGE, UNIT, Storey, is_flexible_hall
 
 SHARES = (1.0, 0.4, 0.0)  # how much of their freedom the walls' lines use; less when openings then find no place
 HALL_TRUST = 0.02  # how much the lines care for the area of an unstated hallway, beside that of a room
@@ -59,16 +59,16 @@ def _realise(
     spec, n = request.spec, len(request.rooms)
     corners = [wall_lines.outline(grid, i) for i in range(n)]
     sides = [flights if flights and r.type == "staircase" else _inner_sides(grid, corners[i], n) for i, r in enumerate(request.rooms)]
-    lines = wall_lines.find(grid, UNIT)
+    lines = wall_lines.find_lines(grid, UNIT)
     tight = np.array([r.type == "hallway" or r.min_width is not None for r in request.rooms])
     spare = np.array([_across(c) for c in corners]) - NARROW - spec.half.inner - spec.half.outer
     slack = np.where(tight, (spec.strict * UNIT - request.clear) / 2, np.minimum(wall_lines.FARTHEST, spare / 2))
-    trust = np.where(np.array([r.type in {"hallway", "entry"} and not r.area.stated for r in request.rooms]), HALL_TRUST, 1.0)
+    trust = np.where([is_flexible_hall(r) for r in request.rooms], HALL_TRUST, 1.0)
     fixed = np.zeros(lines.at.size, dtype=bool)
     for i in (i for i, r in enumerate(request.rooms) if r.type == "staircase"):
         fixed |= wall_lines.outer(lines, grid, n)  # outside walls and stairs stand above each other
         fixed[wall_lines.corner_lines(lines, corners[i])] = True
-    at = wall_lines.fit(lines, corners, sides, spec.target, trust, np.maximum(slack, 0.0), fixed, share, spec.half)
+    at = wall_lines.fit_lines(lines, corners, sides, spec.target, trust, np.maximum(slack, 0.0), fixed, share, spec.half)
     for i, room in enumerate(request.rooms):
         if room.type == "staircase" and request.level > 0:
             continue  # one room with its lowest level

@@ -95,7 +95,7 @@ class Lines(NamedTuple):
     at: Floats
 
 
-def find(grid: Labels, unit: float) -> Lines:
+def find_lines(grid: Labels, unit: float) -> Lines:
     """Find the lines of a bordered grid."""
     height, width = grid.shape[0] - 2, grid.shape[1] - 2
     body = grid[1:-1, :], grid[:, 1:-1]
@@ -137,7 +137,7 @@ def outer(lines: Lines, grid: Labels, n: int) -> NDArray[np.bool_]:
     return outside
 
 
-def fit(
+def fit_lines(
     lines: Lines,
     outlines: list[Corners],
     sides: list[list[bool]],

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pipeline.floorplan.search.energy import Terms, terms, together, weighted_sum
+from pipeline.floorplan.search.energy import Terms, terms, weighted_sum, zone_spread
 from pipeline.floorplan.search.grid import Floats, Ints, Labels, Measures, empty, measure
 from pipeline.floorplan.search.spec import Spec, tree
 from pipeline.geometry.compiled import borrowing
@@ -157,7 +157,7 @@ def anneal(
     measure(grid, n, out)
     exact = n > 0  # a plain True is a type of its own: `terms` would be compiled twice
     values, hard = terms(grid, out, spec, edges, areas, shape, touched, exact)
-    soft = weighted_sum(values, weights) + together(out, spec.near)
+    soft = weighted_sum(values, weights) + zone_spread(out, spec.near)
     if hard < np.inf:
         _settle(shape, kept, touched)
     best_soft, best_hard = soft, hard
@@ -175,7 +175,7 @@ def anneal(
         measure(trial, n, out)
         # the draw says how much worse the proposal may be; most fall at the first, cheap look
         bound = np.inf if hard == np.inf else soft + weight * hard - heat * np.log(draws[k, 7] + 1e-300)
-        new_hard, new_soft, new_values, united = np.inf, np.inf, values, together(out, spec.near)
+        new_hard, new_soft, new_values, united = np.inf, np.inf, values, zone_spread(out, spec.near)
         for look in range(2):
             new_values, new_hard = terms(trial, out, spec, edges, areas, shape, touched, look == 1)
             new_soft = weighted_sum(new_values, weights) + united

@@ -10,18 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pipeline.floorplan.search.grid import (
-    Floats,
-    Ints,
-    Labels,
-    Measures,
-    ell_opening,
-    hull_area,
-    inner_area,
-    notch_width,
-    opening,
-    simple,
-)
+from pipeline.floorplan.search.grid import Floats, Ints, Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
 from pipeline.floorplan.search.spec import Spec
 from pipeline.geometry.compiled import borrowing
 
@@ -49,7 +38,7 @@ class Terms(NamedTuple):
 TERMS = Terms._fields
 NOTHING = Terms(*(0.0,) * len(TERMS))
 TONGUE = 0.76  # m between inner faces: no part of a room is narrower
-TOGETHER = 12.0  # weight of what belongs together, beside the twelve
+ZONE_WEIGHT = 12.0  # weight of what belongs together, beside the twelve
 SLIM, STEEP = 2.2, 4.0  # ratio of sides from which on a room is a corridor, and how much more it costs then
 SPLIT = 4.5  # m2 charged when a room falls apart at a neck; the legacy solver charges 45 in its units of 0.25 m2 x 0.4
 
@@ -103,15 +92,15 @@ def circulation(out: Measures, edges: Ints) -> float:
 
 
 @borrowing
-def area(areas: Floats, target: Floats, heed: Floats) -> float:
+def area(areas: Floats, target: Floats, area_weight: Floats) -> float:
     """Term 2: mean over rooms of max(q, 1/q) - 1 with q = inner area / target (absolute, unlike the legacy shares).
 
-    Rooms count as `heed` says: corridors of no stated area take what is left.
+    Rooms count as `area_weight` says: corridors of no stated area take what is left.
     """
     total = 0.0
     for i in range(target.size):
         q = max(areas[i], 0.05) / target[i]
-        total += heed[i] * (max(q, 1.0 / q) - 1.0)
+        total += area_weight[i] * (max(q, 1.0 / q) - 1.0)
     return total / target.size * 4.0
 
 
@@ -217,7 +206,7 @@ def stair_snug(both: float, stair: float, own: float) -> float:
 
 
 @borrowing
-def together(out: Measures, near: Floats) -> float:
+def zone_spread(out: Measures, near: Floats) -> float:
     """Return what zones ask for, weighted: distances of centroids / diagonal, meant over each zone's pairs."""
     total = 0.0
     for k in range(near.shape[0]):
@@ -227,7 +216,7 @@ def together(out: Measures, near: Floats) -> float:
     if total == 0.0:
         return 0.0
     width, height = out.columns.size - 1, out.rows.size - 1
-    return float(TOGETHER * total / (width * width + height * height) ** 0.5)
+    return float(ZONE_WEIGHT * total / (width * width + height * height) ** 0.5)
 
 
 @borrowing
@@ -311,7 +300,7 @@ def terms(
         hard += 0.5 * out.corners[room, 1]  # storeys share the staircase: a rectangle
     values = Terms(
         circulation=circulation(out, edges),
-        area=area(areas, spec.target, spec.heed),
+        area=area(areas, spec.target, spec.area_weight),
         squareness=squareness(out.box, spec.square),
         convexity=convexity(shape, out.cells),
         simplicity=simplicity(out.corners, n),

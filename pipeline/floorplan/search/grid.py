@@ -44,21 +44,10 @@ class Measures(NamedTuple):
 def empty(n: int, height: int, width: int) -> Measures:
     """Return scratch space for a grid of `height` x `width` cells (border not counted)."""
     m = n + 1
-    return Measures(
-        np.zeros(m, np.int64),
-        np.zeros((m, 4), np.int64),
-        np.zeros((m, 2), np.int64),
-        np.zeros(m, np.int64),
-        np.zeros((m, m), np.int64),
-        np.zeros((m, m), np.int64),
-        np.zeros((m, m, 2)),
-        np.zeros((m, 2)),
-        np.zeros(width + 1, np.int64),
-        np.zeros(height + 1, np.int64),
-        np.zeros(m, np.int64),
-        np.zeros((2, width + 1), np.int64),
-        np.zeros((m, 4)),
-    )
+    cells, box, corners, pinched, walls, run = (np.zeros(shape, np.int64) for shape in (m, (m, 4), (m, 2), m, (m, m), (m, m)))
+    columns, rows, outline_corners, stretches = (np.zeros(shape, np.int64) for shape in (width + 1, height + 1, m, (2, width + 1)))
+    middle, centre, travel = np.zeros((m, m, 2)), np.zeros((m, 2)), np.zeros((m, 4))
+    return Measures(cells, box, corners, pinched, walls, run, middle, centre, columns, rows, outline_corners, stretches, travel)
 
 
 @borrowing

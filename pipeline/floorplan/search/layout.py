@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from pipeline.floorplan.search.energy import TOGETHER, Terms, overlap, share_error, stair_fit, stair_snug
+from pipeline.floorplan.search.energy import ZONE_WEIGHT, Terms, overlap, share_error, stair_fit, stair_snug
 from pipeline.floorplan.search.grid import Floats, Ints
 from pipeline.floorplan.search.spec import Spec
 from pipeline.geometry.compiled import borrowing
@@ -45,12 +45,12 @@ class Wishes(NamedTuple):
     square: Floats  # (n,) what sides cost that are unlike
     edges: Ints  # (k, 2) room and parent on the ways from the entrance, nearest first
     wanted: Floats  # (m,) areas up to wall centre lines [cells], and
-    heed: Floats  # (n,) what missing them costs, for rooms whose area is flexible
+    area_weight: Floats  # (n,) what missing them costs, for rooms whose area is flexible
     weights: Terms
 
 
 @borrowing
-def leaning(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, travel: Floats) -> float:
+def topology_cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, travel: Floats) -> float:
     """Return the weighted terms that the topology decides, as `energy` has them: circulation, exterior, corner_light, useful_area."""
     habitable, useful, edges, weights = wishes.spec.habitable, wishes.spec.useful, wishes.edges, wishes.weights
     m = rect.shape[0]
@@ -125,7 +125,7 @@ def cost(rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wis
     total += wishes.weights.alignment * count_wall_lines(rect)
     if total > most:
         return float(total)
-    return float(total) + leaning(rect, width, height, n, gross, wishes, travel)
+    return float(total) + topology_cost(rect, width, height, n, gross, wishes, travel)
 
 
 @borrowing
@@ -155,7 +155,7 @@ def _of_pairs(total: float, rect: Ints, wishes: Wishes, diagonal: float, most: f
 @borrowing
 def _of_rooms(total: float, rect: Ints, width: int, height: int, n: int, gross: Floats, wishes: Wishes, most: float) -> float:
     """Add what rooms cost that are narrow, long, larger or smaller than wanted, or without the outside walls or the corner that they need."""
-    spec, square, heed, wanted = wishes.spec, wishes.square, wishes.heed, wishes.wanted
+    spec, square, area_weight, wanted = wishes.spec, wishes.square, wishes.area_weight, wishes.wanted
     least, wide, narrow = spec.strict, spec.least, wishes.weights.min_width * spec.unit * spec.unit
     for a in range(n):
         w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
@@ -170,9 +170,9 @@ def _of_rooms(total: float, rect: Ints, width: int, height: int, n: int, gross: 
             total += 2.0 * narrow * w * h * (wide[a] - short) / wide[a]
         off = w * h / gross[a]
         total += 3.0 * (max(off, 1.0 / off) - 1.0)
-        if heed[a] > 0.0:
+        if area_weight[a] > 0.0:
             off = gross[a] / wanted[a]
-            total += heed[a] * (max(off, 1.0 / off) - 1.0)
+            total += area_weight[a] * (max(off, 1.0 / off) - 1.0)
         if spec.outside[a] > 0:
             best = _outside(rect, a, width, height, n)
             if best < spec.outside[a]:
@@ -188,11 +188,7 @@ def _of_rooms(total: float, rect: Ints, width: int, height: int, n: int, gross: 
 def _outside(rect: Ints, a: int, width: int, height: int, n: int) -> int:
     """Return the longest stretch of outside wall of a rectangle [cells], walls to voids included."""
     w, h = rect[a, 2] - rect[a, 0], rect[a, 3] - rect[a, 1]
-    best = 0
-    if rect[a, 0] == 0 or rect[a, 2] == width:
-        best = h
-    if (rect[a, 1] == 0 or rect[a, 3] == height) and w > best:
-        best = w
+    best = max(h * (rect[a, 0] == 0 or rect[a, 2] == width), w * (rect[a, 1] == 0 or rect[a, 3] == height))
     for v in range(n, rect.shape[0]):
         best = max(best, contact(rect, a, v))
     return int(best)
@@ -217,11 +213,7 @@ def _of_order(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> floa
 def _of_voids(total: float, rect: Ints, width: int, height: int, n: int) -> float:
     """Add what voids cost that are not in a corner, or long."""
     for v in range(n, rect.shape[0]):
-        sides = 0
-        if (rect[v, 0] == 0) != (rect[v, 2] == width):
-            sides += 1
-        if (rect[v, 1] == 0) != (rect[v, 3] == height):
-            sides += 1
+        sides = ((rect[v, 0] == 0) != (rect[v, 2] == width)) + ((rect[v, 1] == 0) != (rect[v, 3] == height))
         total += 15.0 * (2 - sides)
         w, h = rect[v, 2] - rect[v, 0], rect[v, 3] - rect[v, 1]
         total += 0.5 * (max(w, h) / min(w, h) - 1.0)
@@ -236,7 +228,7 @@ def _of_nearness(total: float, rect: Ints, wishes: Wishes, diagonal: float) -> f
         a, b = int(near[k, 0]), int(near[k, 1])
         dx = 0.5 * (rect[a, 0] + rect[a, 2] - rect[b, 0] - rect[b, 2])
         dy = 0.5 * (rect[a, 1] + rect[a, 3] - rect[b, 1] - rect[b, 3])
-        total += TOGETHER * near[k, 2] * (dx * dx + dy * dy) ** 0.5 / diagonal
+        total += ZONE_WEIGHT * near[k, 2] * (dx * dx + dy * dy) ** 0.5 / diagonal
     return total
 
 

@@ -46,21 +46,15 @@ def lay_out(expr: Ints, gross: Floats, width: int, height: int, rect: Ints, work
             rect[room, 0], rect[room, 1], rect[room, 2], rect[room, 3] = x0, y0, x1, y1
             continue
         left, right = work[k, 0], work[k, 1]
-        share = sums[left] / sums[k]
         work[left, 2], work[left, 3], work[left, 4], work[left, 5] = x0, y0, x1, y1
         work[right, 2], work[right, 3], work[right, 4], work[right, 5] = x0, y0, x1, y1
-        if expr[k] == V:
-            cut = x0 + int((x1 - x0) * share + 0.5)
-            if cut <= x0 or cut >= x1:
-                return False
-            work[left, 4] = cut
-            work[right, 2] = cut
-        else:
-            cut = y0 + int((y1 - y0) * share + 0.5)
-            if cut <= y0 or cut >= y1:
-                return False
-            work[left, 5] = cut
-            work[right, 3] = cut
+        axis = 0 if expr[k] == V else 1
+        low, high = work[k, 2 + axis], work[k, 4 + axis]
+        cut = low + int((high - low) * (sums[left] / sums[k]) + 0.5)
+        if cut <= low or cut >= high:
+            return False
+        work[left, 4 + axis] = cut
+        work[right, 2 + axis] = cut
     return True
 
 
@@ -123,7 +117,7 @@ class Scratch(NamedTuple):
     rect: Ints  # (m, 4) rectangles of the proposal
     nodes: Ints  # (2m-1, 7) and
     sums: Floats  # (2m-1,) as `lay_out` wants them
-    travel: Floats  # (n, 4) as `leaning` wants it
+    travel: Floats  # (n, 4) as `topology_cost` wants it
 
 
 @borrowing

@@ -35,7 +35,7 @@ class Spec(NamedTuple):
     stair: Ints  # (4,) its rectangle x0, y0, x1, y1 [cells]
     nonrect: int  # at least so many rooms that are not rectangles
     half: Halves  # half the thickness of walls [m]
-    heed: Floats  # (n,) how much the wanted area counts
+    area_weight: Floats  # (n,) how much the wanted area counts
     flight: Ints  # (3,) index of the staircase or -1, longer and shorter side of what its flights take [cells]
     between: Ints  # (k, 3) room a lies between b and c: seen from its centroid, theirs lie in opposite halves
     near: Floats  # (k, 3) rooms a, b that belong together (members of a zone), and how much

@@ -20,7 +20,7 @@ OPEN_FRONT, PORTAL = 1.5, 1.2  # least clear widths [m]
 # How far an unstated area may miss its target: a share, and a strip of this width [m] along one side, for the raster; where nothing else helps.
 LOOSE, STRIP, EASED = 0.02, 0.2, 0.4
 SMALL, BUSY = 7.0, 3  # rooms of less area [m2] or so many links give up their outside wall first
-HALL_HEED = 0.25  # how much an unstated hallway's usual area counts beside that of a room
+HALL_WEIGHT = 0.25  # how much an unstated hallway's usual area counts beside that of a room
 FLIGHTS = (2.85, 2.1)  # what two flights side by side take, with their landings [m]: 16 risers of 0.18 m, treads of 0.27 m
 SOFTER = (1.0, 0.3, 0.1, 0.03)  # factors on the weights of all terms then: what must be comes before what should
 EASED_HALL = 1.95  # how much larger than its target an unstated hallway may be then
@@ -60,6 +60,11 @@ def sides(program: FloorProgram) -> float:
     return 2 * FRAME + 2 * max(halves(program))
 
 
+def is_flexible_hall(room: RoomReq) -> bool:
+    """Whether a room is circulation of no stated area, which takes what is left."""
+    return room.type in {"hallway", "entry"} and not room.area.stated
+
+
 def wall_for(kind: str, door: float, small: bool, beside: float) -> int:
     """Return the straight wall [cells] that a link of that kind needs; `beside` [m] as `sides` returns it."""
     if kind in {"wall", "any"}:
@@ -96,45 +101,28 @@ def storey(program: FloorProgram, level: int, stair_cells: tuple[int, int, int, 
     # a small room cannot be as wide as its type usually is
     least = np.array([cells(min(w, 0.92 * t**0.5 + 2 * half.inner)) for w, t in zip(clear, target, strict=True)])
     strict = _strict_widths(rooms, least, half, ease)
-    square, habitable, useful = (
-        np.array([int(getattr(DEFAULTS[r.type], name)) for r in rooms]) for name in ("square", "habitable", "useful")
-    )
+    kinds = [DEFAULTS[r.type] for r in rooms]
+    square, habitable, useful = (np.array([int(getattr(k, name)) for k in kinds]) for name in ("square", "habitable", "useful"))
+    flexible = np.array([is_flexible_hall(r) for r in rooms])
     spec = Spec(
-        UNIT,
-        index.get(program.entrance.into or "", max(stairs, 0)),
-        target,
-        low,
-        high,
-        _total(program),
-        np.array([int(r.type not in OUTSIDE) for r in rooms]),
-        least,
-        strict,
-        square,
-        habitable,
-        useful,
-        np.array([int(r.type == "hallway") for r in rooms]),
-        link,
-        need,
-        ban,
-        np.array(outside),
-        np.array([cells(r.exterior_length + 0.5) if r.exterior_length else 0 for r in rooms]),
-        np.array([int(r.exterior == "corner") for r in rooms]),
-        apart,
-        order,
-        stairs if stair_cells is not None else -1,
-        np.array(stair_cells or (0, 0, 0, 0)),
-        program.nonrect if level == 0 else 0,
-        half,
-        np.array([HALL_HEED if r.type in {"hallway", "entry"} and not r.area.stated else 1.0 for r in rooms]),
-        np.array([stairs, *(cells(s + 2 * half.inner) for s in FLIGHTS)] if program.storeys > 1 else [-1, 0, 0]),
-        _between(here, index),
-        _near(here, index),
-    )
+        unit=UNIT, half=half,
+        root=index.get(program.entrance.into or "", max(stairs, 0)),
+        target=target, low=low, high=high, total=_total(program),
+        area_weight=np.where(flexible, HALL_WEIGHT, 1.0),
+        inside=np.array([int(r.type not in OUTSIDE) for r in rooms]),
+        least=least, strict=strict, square=square, habitable=habitable, useful=useful,
+        corridor=np.array([int(r.type == "hallway") for r in rooms]),
+        link=link, need=need, ban=ban, apart=apart, order=order, between=_between(here, index), near=_near(here, index),
+        outside=np.array(outside),
+        outside_sum=np.array([cells(r.exterior_length + 0.5) if r.exterior_length else 0 for r in rooms]),
+        corner=np.array([int(r.exterior == "corner") for r in rooms]),
+        stair_room=stairs if stair_cells is not None else -1,
+        stair=np.array(stair_cells or (0, 0, 0, 0)),
+        flight=np.array([stairs, *(cells(s + 2 * half.inner) for s in FLIGHTS)] if program.storeys > 1 else [-1, 0, 0]),
+        nonrect=program.nonrect if level == 0 else 0,
+    )  # fmt: skip
     gross = _gross(target, half)
-    gross_low, gross_high = gross.copy(), gross.copy()
-    for i, r in enumerate(rooms):
-        if r.type in {"hallway", "entry"} and not r.area.stated:
-            gross_low[i], gross_high[i] = gross[i] * 0.75, gross[i] * (1.9 if ease else 1.3)
+    gross_low, gross_high = np.where(flexible, gross * 0.75, gross), np.where(flexible, gross * (1.9 if ease else 1.3), gross)
     return Storey(level, rooms, spec, weights_of(program, SOFTER[min(ease, len(SOFTER) - 1)]), gross, gross_low, gross_high, clear)
 
 
@@ -150,12 +138,10 @@ def _links(program: FloorProgram, index: Mapping[str, int], target: Floats) -> t
     """Return which rooms open to each other, and the straight wall that each pair is to share [cells], both (n, n)."""
     n, door = len(index), program.accessibility.min_door
     link, need = np.zeros((n, n), np.int64), np.zeros((n, n), np.int64)
-    for k in program.links:
-        if k.a in index and k.b in index:
-            a, b = index[k.a], index[k.b]
-            need[a, b] = need[b, a] = wall_for(k.kind, door, min(target[a], target[b]) < 7.0, sides(program))
-            if k.opens:
-                link[a, b] = link[b, a] = 1
+    for k in (k for k in program.links if k.a in index and k.b in index):
+        a, b = index[k.a], index[k.b]
+        need[a, b] = need[b, a] = wall_for(k.kind, door, min(target[a], target[b]) < 7.0, sides(program))
+        link[a, b] = link[b, a] = max(link[a, b], int(k.opens))
     return link, need
 
 
@@ -192,17 +178,20 @@ def stretch_storeys(program: FloorProgram) -> FloorProgram:
         if flexible and whole < above:
             factor = min(1.0 + (above - whole) / flexible, MOST_STRETCH)
             for i in free:
-                area = rooms[i].area
-                rooms[i] = rooms[i].model_copy(update={"area": area.model_copy(update={"target": (area.target or 0.0) * factor})})
+                rooms[i] = _scaled(rooms[i], factor, 1.0)
             whole += (factor - 1.0) * flexible
         above = max(above, whole)
     loose = [i for i, r in enumerate(rooms) if not r.area.stated and r.type not in OUTSIDE]
     before, after = (sum(rs[i].area.target or 0.0 for i in loose) for rs in (program.rooms, rooms))
     if program.total_area.stated and after > before:
         for i in loose:
-            area = rooms[i].area
-            rooms[i] = rooms[i].model_copy(update={"area": area.model_copy(update={"target": (area.target or 0.0) * before / after})})
+            rooms[i] = _scaled(rooms[i], before, after)
     return program.model_copy(update={"rooms": tuple(rooms)})
+
+
+def _scaled(room: RoomReq, over: float, under: float) -> RoomReq:
+    """Return a room whose target area is `over` / `under` times what it was."""
+    return room.model_copy(update={"area": room.area.model_copy(update={"target": (room.area.target or 0.0) * over / under})})
 
 
 def _gross(target: Floats, half: Halves) -> Floats:
@@ -215,7 +204,7 @@ def _bounds(rooms: tuple[RoomReq, ...], target: Floats, ease: int) -> tuple[Floa
     loose, most = (EASED, EASED_HALL) if ease else (LOOSE + STRIP / np.sqrt(target), FREE_HALL[1])
     low, high = target * (1 - loose), target * (1 + loose)
     for i, r in enumerate(rooms):
-        if r.type in {"hallway", "entry"} and not r.area.stated:
+        if is_flexible_hall(r):
             low[i], high[i] = target[i] * FREE_HALL[0], target[i] * most
         if r.area.stated and r.area.target is not None and r.area.min is None and r.area.max is None:
             low[i], high[i] = target[i] * (1 - STATED) * (1 + EDGE), target[i] * (1 + STATED) * (1 - EDGE)
@@ -240,9 +229,8 @@ def _clear(room: RoomReq, program: FloorProgram) -> float:
 def _outside(rooms: tuple[RoomReq, ...], program: FloorProgram, level: int, ease: int) -> list[int]:
     """Straight outside wall that each room needs [cells]: what was asked for, and usual ones as far as all fit together."""
     asked = [_asked_outside(r, program, level) for r in rooms]
-    usual = [
-        r for r, a in zip(rooms, asked, strict=True) if a == 0 and DEFAULTS[r.type].exterior and r.type != "entry" and r.exterior != "none"
-    ]
+    free = [r for r, a in zip(rooms, asked, strict=True) if a == 0 and r.exterior != "none"]
+    usual = [r for r in free if DEFAULTS[r.type].exterior and r.type != "entry"]
     ids = {r.id for r in rooms}
     links = [k for k in program.links if k.a in ids and k.b in ids]
     if ease >= 2:
@@ -253,17 +241,15 @@ def _outside(rooms: tuple[RoomReq, ...], program: FloorProgram, level: int, ease
 
 
 def _asked_outside(room: RoomReq, program: FloorProgram, level: int) -> int:
+    """Return the straight outside wall that a room is asked to have [cells], for its gate, its door, or as such; 0 for none."""
     into = level == 0 and program.entrance.into == room.id
     own = any(room in program.select(s) for s in program.entrance.separate)
     if room.type == "garage":
         return cells(2.4 + sides(program))
     if into or own or room.exterior == "door":
         return cells(0.9 + sides(program))
-    if room.exterior == "none":
-        return 0
-    if room.exterior in {"wall", "corner"} or room.window == "required":
-        return cells(1.0 + sides(program))
-    return 0
+    walled = room.exterior in {"wall", "corner"} or (room.window == "required" and room.exterior != "none")
+    return cells(1.0 + sides(program)) if walled else 0
 
 
 def _relations(program: FloorProgram, index: dict[str, int]) -> tuple[Ints, Floats, Floats]:

@@ -51,7 +51,7 @@ class Trees:
         self.low = np.concatenate([request.gross_low, empty * 0.7])
         self.high = np.concatenate([request.gross_high, empty * 1.3])
         square = np.where(spec.square > 0, 0.6, 0.08) * 2.0**program.style.squareness
-        flexible = request.weights.area * 4.0 / n * spec.heed * (request.gross_high > request.gross_low)
+        flexible = request.weights.area * 4.0 / n * spec.area_weight * (request.gross_high > request.gross_low)
         pairs = np.argwhere(np.triu((spec.need > 0) | (spec.ban > 0) | (spec.apart > 0), 1))
         one, other = pairs.T
         numbers = np.ascontiguousarray(np.column_stack([pairs, spec.need[one, other], spec.ban[one, other]]))
@@ -76,11 +76,9 @@ class Trees:
         for i, (x0, y0, x1, y1) in enumerate(rects.tolist()):
             grid[y0 + 1 : y1 + 1, x0 + 1 : x1 + 1] = min(i, n)
         cut = rects[n:]
-        corners = [
-            (x0 == 0) != (x1 == width) and (y0 == 0) != (y1 == height) and min(x1 - x0, y1 - y0) >= LEAST_CUT
-            for x0, y0, x1, y1 in cut.tolist()
-        ]
-        if not all(corners) or (self.voids == 2 and not _same_side(cut)):
+        x0, y0, x1, y1 = cut.T
+        corners = ((x0 == 0) != (x1 == width)) & ((y0 == 0) != (y1 == height)) & (np.minimum(x1 - x0, y1 - y0) >= LEAST_CUT)
+        if not corners.all() or (self.voids == 2 and not _same_side(cut)):
             return grid, np.inf
         if spec.stair_room >= 0:
             stamp(grid, spec.stair_room, tuple(spec.stair.tolist()), n)

@@ -9,7 +9,7 @@ import shapely
 
 from pipeline.entities.plan import Opening, Room, Swing
 from pipeline.floorplan.imports.sketch import Floats, OwnPlanError, Sketch, SketchOpening, refuse
-from pipeline.floorplan.imports.walls import TOUCH, Stretch
+from pipeline.floorplan.imports.wall_stretches import TOUCH, Stretch
 from pipeline.floorplan.program.defaults import DOOR, DOOR_HEIGHT
 
 EDGE = 0.02  # [m] least wall beside an opening
@@ -34,7 +34,7 @@ class Fitted:
     stretch: Stretch
 
 
-def fit(sketch: Sketch, rooms: Sequence[Room], walls: Sequence[Stretch]) -> list[Fitted]:
+def fit_openings(sketch: Sketch, rooms: Sequence[Room], walls: Sequence[Stretch]) -> list[Fitted]:
     """Put every opening of the sketch into a wall. Raises RefusedError for one that has none; in a house of a dataset it is left out."""
     known = {r.room_id: r for r in rooms}
     placed: list[Fitted] = []
@@ -55,7 +55,7 @@ def put_door(name: str, pair: Iterable[str], walls: Sequence[Stretch], placed: S
     wanted = tuple(pair)
     for stretch in sorted((s for s in walls if set(s.rooms) == set(wanted)), key=lambda s: -round(s.length, 3)):
         low = _free_place(stretch, width, placed)
-        if low is not None and (stretch.gap >= TOUCH or len(wanted) == 1):
+        if low is not None and (stretch.thickness >= TOUCH or len(wanted) == 1):
             kind = "entrance" if len(wanted) == 1 else "door"
             opening = Opening(name, kind, stretch.rooms, stretch.at(low, low + width), DOOR_HEIGHT, 0.0, None, stretch.level)  # type: ignore[arg-type]
             return Fitted(opening, stretch)
@@ -69,23 +69,20 @@ def _fit(sketch: Sketch, wish: SketchOpening, rooms: dict[str, Room], walls: Seq
         width = {"window": 1.2, "entrance": 0.9, "portal": 1.2}.get(wish.kind, DOOR)
     if width < NARROWEST[wish.kind]:
         raise refuse(f"{name} is {width:.2f} m wide; a {wish.kind} has {NARROWEST[wish.kind]:g} m or more")
-    mine = [s for s in walls if s.level == wish.level and _may(wish, s, sketch.foreign)]
+    mine = [s for s in walls if s.level == wish.level and _may_stand_in(wish, s, sketch.foreign)]
     if not mine and wish.rooms:
         between = " and ".join(wish.rooms)
-        raise refuse(
-            f"{name} is to join {between}, which share no wall" if len(wish.rooms) == 2 else f"{between} has no outside wall for {name}"
-        )
+        joined = len(wish.rooms) == 2
+        raise refuse(f"{name} is to join {between}, which share no wall" if joined else f"{between} has no outside wall for {name}")
     if wish.segment is None and wish.at is None:
-        stretch, low = _anywhere(wish, width, mine, placed)
+        stretch, low = _any_place(wish, width, mine, placed)
         width = stretch.length - 2 * EDGE if wish.kind == "open" and wish.width is None else width
     else:
-        stretch, low, width = _there(sketch, wish, width, mine)
-    if wish.kind in {"door", "entrance", "window"} and len(stretch.rooms) == 2 and stretch.gap < TOUCH:
-        raise refuse(
-            f"{name} has no wall to stand in: {' and '.join(stretch.rooms)} touch",
-            "leave walls between the rooms, or state `faces: centre`",
-        )
-    low, width = _beside(sketch, wish, stretch, (low, width), placed)
+        stretch, low, width = _stated_place(sketch, wish, width, mine)
+    if wish.kind in {"door", "entrance", "window"} and len(stretch.rooms) == 2 and stretch.thickness < TOUCH:
+        message = f"{name} has no wall to stand in: {' and '.join(stretch.rooms)} touch"
+        raise refuse(message, "leave walls between the rooms, or state `faces: centre`")
+    low, width = _narrowed(sketch, wish, stretch, (low, width), placed)
     kind = wish.kind
     if kind == "entrance" and len(stretch.rooms) == 2:
         kind = "door"
@@ -101,7 +98,7 @@ def _fit(sketch: Sketch, wish: SketchOpening, rooms: dict[str, Room], walls: Seq
     return Fitted(Opening(name, kind, rooms_said, segment, height, sill, swing, stretch.level), stretch)
 
 
-def _may(wish: SketchOpening, stretch: Stretch, foreign: bool) -> bool:
+def _may_stand_in(wish: SketchOpening, stretch: Stretch, foreign: bool) -> bool:
     """Whether an opening may stand in a stretch of its storey: between its rooms; an entrance leads outside.
 
     In a dataset's house, where one of its rooms is known, another may lie behind a thick wall.
@@ -111,7 +108,7 @@ def _may(wish: SketchOpening, stretch: Stretch, foreign: bool) -> bool:
     return set(stretch.rooms) == set(wish.rooms) or (foreign and len(wish.rooms) == 1 and wish.rooms[0] in stretch.rooms)
 
 
-def _beside(
+def _narrowed(
     sketch: Sketch, wish: SketchOpening, stretch: Stretch, place: tuple[float, float], placed: Sequence[Fitted]
 ) -> tuple[float, float]:
     """Return from where and how wide [m] an opening is that adjoins others, as the panes of a bay do: narrowed for a post between them."""
@@ -121,20 +118,17 @@ def _beside(
         if other.stretch.level != stretch.level or _line(other).distance(_line(stretch, low, width)) >= 1e-6:
             continue
         taken = sorted(float(v) for v in (other.opening.segment - stretch.start) @ stretch.along)
-        post = 2 * EDGE if other.stretch is stretch else 2 * EDGE + other.stretch.gap / 2
+        post = 2 * EDGE if other.stretch is stretch else 2 * EDGE + other.stretch.thickness / 2
         start, end = max(((low, taken[0] - post), (taken[1] + post, low + width)), key=lambda s: s[1] - s[0])
         if end - start < max(NARROWEST[wish.kind], place[1] - most):
             raise refuse(f"{wish.opening_id} and {other.opening.opening_id} are in one place")
-        sketch.repair(
-            "narrowed",
-            wish.opening_id,
-            f"it meets {other.opening.opening_id}: {width - end + start:.2f} m of it become the post between them",
-        )
+        text = f"it meets {other.opening.opening_id}: {width - end + start:.2f} m of it become the post between them"
+        sketch.repair("narrowed", wish.opening_id, text)
         low, width = start, end - start
     return low, width
 
 
-def _anywhere(wish: SketchOpening, width: float, walls: Sequence[Stretch], placed: Sequence[Fitted]) -> tuple[Stretch, float]:
+def _any_place(wish: SketchOpening, width: float, walls: Sequence[Stretch], placed: Sequence[Fitted]) -> tuple[Stretch, float]:
     """Return a place for an opening of which only the rooms are stated; an open front takes the whole wall."""
     longest = max(walls, key=lambda s: s.length)
     if wish.kind == "open" and wish.width is None:
@@ -146,7 +140,7 @@ def _anywhere(wish: SketchOpening, width: float, walls: Sequence[Stretch], place
     raise refuse(f"{wish.opening_id} is {width:.2f} m wide and its wall {longest.length:.2f} m, other openings included")
 
 
-def _there(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[Stretch]) -> tuple[Stretch, float, float]:
+def _stated_place(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[Stretch]) -> tuple[Stretch, float, float]:
     """Return the nearest stretch to where the opening is stated, its place on it, and its width, less what its jambs need."""
     middle = wish.segment.mean(axis=0) if wish.segment is not None else wish.at
     assert middle is not None
@@ -156,11 +150,10 @@ def _there(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[St
             continue
         across = abs(float((middle - stretch.start) @ stretch.left))
         along = float((middle - stretch.start) @ stretch.along)
-        beyond = max(0.0, width / 2 - along, along + width / 2 - stretch.length)
-        if across <= stretch.gap / 2 + REACH and -SLIDE <= along <= stretch.length + SLIDE:
-            key = across + beyond
-            if best is None or key < best[0] - 1e-9:
-                best = (key, stretch, along - width / 2)
+        key = across + max(0.0, width / 2 - along, along + width / 2 - stretch.length)
+        near = across <= stretch.thickness / 2 + REACH and -SLIDE <= along <= stretch.length + SLIDE
+        if near and (best is None or key < best[0] - 1e-9):
+            best = (key, stretch, along - width / 2)
     if best is None:
         at = f"({middle[0]:.2f}, {middle[1]:.2f})"
         where = f" between {' and '.join(wish.rooms)}" if len(wish.rooms) == 2 else f" of {wish.rooms[0]}" if wish.rooms else ""
@@ -171,17 +164,15 @@ def _there(sketch: Sketch, wish: SketchOpening, width: float, walls: Sequence[St
         spare = 2 * SLIDE if wish.kind == "open" else JAMBS
         if clear < NARROWEST[wish.kind] or width - clear > (max(width / 2, spare) if sketch.foreign else spare):
             raise refuse(f"{wish.opening_id} is {width:.2f} m wide and its wall {stretch.length:.2f} m")
-        jambs = "no wall is left for its jambs"
-        sketch.repair(
-            "narrowed", wish.opening_id, f"{width:.2f} m wide in a wall of {stretch.length:.2f} m, {jambs}: narrowed to {clear:.2f} m"
-        )
+        text = f"{width:.2f} m wide in a wall of {stretch.length:.2f} m, no wall is left for its jambs: narrowed to {clear:.2f} m"
+        sketch.repair("narrowed", wish.opening_id, text)
         low, width = EDGE, clear
     moved = float(np.clip(low, EDGE, stretch.length - width - EDGE))
     slide = abs(moved - low)
     if slide > SLIDE:
         raise refuse(f"{wish.opening_id} sticks out {slide:.2f} m at the end of its wall")
     shift = float(np.hypot(slide, abs(float((middle - stretch.start) @ stretch.left))))
-    if shift > max(STATED, stretch.gap / 2 + 1e-3):  # on the wall's face is where many files have them
+    if shift > max(STATED, stretch.thickness / 2 + 1e-3):  # on the wall's face is where many files have them
         sketch.repair("moved", wish.opening_id, f"moved {shift:.2f} m onto the wall of {' and '.join(stretch.rooms)}")
     return stretch, moved, width
 
@@ -219,7 +210,7 @@ def _heights(sketch: Sketch, wish: SketchOpening, ceiling: float) -> tuple[float
     return round(height, 4), round(sill, 4)
 
 
-def hang(sketch: Sketch, fitted: list[Fitted], rooms: Sequence[Room], depth: dict[str, int], thickness: float) -> list[Opening]:
+def hang_leaves(sketch: Sketch, fitted: list[Fitted], rooms: Sequence[Room], depth: dict[str, int], thickness: float) -> list[Opening]:
     """Give every door a leaf that swings freely: as the file states it, else into the room farther from the entrance."""
     floors = {r.room_id: shapely.Polygon(r.polygon) for r in rooms}
     kinds = {r.room_id: r.type for r in rooms}
@@ -253,9 +244,8 @@ def sweep_of(segment: Floats, swing: Swing, floor: shapely.Polygon) -> shapely.P
     closed = tip - pivot
     turned = np.array([-closed[1], closed[0]])
     middle = segment.mean(axis=0)
-    inward = (
-        turned if floor.distance(shapely.Point(middle + 0.5 * turned)) <= floor.distance(shapely.Point(middle - 0.5 * turned)) else -turned
-    )
+    one, other = (floor.distance(shapely.Point(middle + side * turned)) for side in (0.5, -0.5))
+    inward = turned if one <= other else -turned
     angles = np.linspace(0.0, swing.angle, 9)
     return shapely.Polygon(np.vstack([pivot, pivot + np.cos(angles)[:, None] * closed + np.sin(angles)[:, None] * inward]))
 

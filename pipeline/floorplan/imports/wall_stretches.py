@@ -20,14 +20,14 @@ LEAST_RUN = 0.24  # [m] the narrowest window with its jambs
 class Stretch:
     """A straight piece of wall: its centre line from `start` (2,) along the unit vector `along`, `length` [m].
 
-    The first room of `rooms` lies on its left; one room: the other side is outside. `gap` [m] is the wall's thickness.
+    The first room of `rooms` lies on its left; one room: the other side is outside. `thickness` [m] is the wall's.
     """
 
     rooms: tuple[str, ...]
     start: Floats
     along: Floats
     length: float
-    gap: float
+    thickness: float
     level: int
 
     @property
@@ -45,9 +45,8 @@ def stretches(rooms: Sequence[Room], level: int, outer: float) -> list[Stretch]:
     shapes = {r.room_id: shapely.Polygon(r.polygon) for r in rooms}
     segments: list[Stretch] = []
     for room in rooms:
-        for start, end in _edges(room.polygon):
+        for start, end, along in edges(room.polygon):
             length = float(np.linalg.norm(end - start))
-            along = (end - start) / length
             out = np.array([along[1], -along[0]])
             taken: list[tuple[float, float]] = []
             for other in rooms:
@@ -72,18 +71,19 @@ def stretches(rooms: Sequence[Room], level: int, outer: float) -> list[Stretch]:
 def touching_share(rooms: Sequence[Room], level: int) -> tuple[int, int]:
     """Return how many stretches between rooms have no thickness, and how many have one."""
     between = [s for s in stretches(rooms, level, 0.24) if len(s.rooms) == 2]
-    thin = sum(s.gap < TOUCH for s in between)
+    thin = sum(s.thickness < TOUCH for s in between)
     return thin, len(between) - thin
 
 
-def _edges(polygon: Floats) -> Iterator[tuple[Floats, Floats]]:
-    yield from itertools.pairwise([*polygon, polygon[0]])
+def edges(ring: Floats) -> Iterator[tuple[Floats, Floats, Floats]]:
+    """Yield start, end and direction (2,) of each edge of a ring (n, 2)."""
+    for p, q in itertools.pairwise([*ring, ring[0]]):
+        yield p, q, (q - p) / np.linalg.norm(q - p)
 
 
 def _facing(start: Floats, along: Floats, out: Floats, length: float, polygon: Floats) -> Iterator[tuple[float, float, float]]:
     """Yield (low, high, gap) of the parts of an edge that edges of another polygon face."""
-    for p, q in _edges(polygon):
-        other = (q - p) / np.linalg.norm(q - p)
+    for p, q, other in edges(polygon):
         if float(other @ along) > -PARALLEL:
             continue
         gap = float(((p + q) / 2 - start) @ out)
