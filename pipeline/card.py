@@ -110,7 +110,8 @@ class Corpus:
     `builder`: module and function of pipeline/corpus/furniture that builds it; `name`: the category name that model_info.json gets; at
     size 1 `static` models as 3D-FUTURE folders and `moving` ones as PartNet-Mobility folders. `material`: 3D-FUTURE's word for the main
     one where it does not follow from wood or lacquer, `soft`: that of the cover. `title`: of its records in house files. `front`: free
-    depth before it [m]. `facing`: it looks where its support looks. `holds`: expected numbers of things on or in it. `order`: place among
+    depth before it [m]. `series`: its models come in the styles `series` of styles.yaml, and those of one style have one front, worktop and
+    handle, as kitchens are sold. `facing`: it looks where its support looks. `holds`: expected numbers of things on or in it. `order`: place among
     the lines, where that is not the category's.
     """
 
@@ -125,6 +126,7 @@ class Corpus:
     facing: bool = False
     holds: Mapping[str, float] = field(default_factory=dict)
     order: int | None = None
+    series: bool = False
 
 
 @dataclass(frozen=True, slots=True)

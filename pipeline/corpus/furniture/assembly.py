@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline import seeds
 from pipeline.card import cards
-from pipeline.corpus.furniture.catalogue import Model
+from pipeline.corpus.furniture.catalogue import Model, series_rng
 from pipeline.corpus.furniture.finishes import LEATHERS, Finishes, draw_finishes
 from pipeline.corpus.furniture.shape import Shape, fit_to_size, freeze
 from pipeline.errors import ContentError
@@ -29,7 +29,8 @@ def builder(category: str) -> Builder:
 
 def finishes_of(model: Model) -> Finishes:
     """Return the finishes of a model."""
-    return draw_finishes(seeds.generator(model.seed, "corpus.furniture.finish"), model.style)
+    own = series_rng(model.style) if cards()[model.category].corpus.series else seeds.generator(model.seed, "corpus.furniture.finish")
+    return draw_finishes(own, model.style)
 
 
 def main_material(model: Model) -> str:

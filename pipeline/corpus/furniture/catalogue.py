@@ -18,6 +18,7 @@ TAIL = float(ndtri(0.95))
 MOST_SKEWED = 1.2  # largest shape parameter of the log-normal; beyond it a handful of draws cannot show the spread
 LEAST, MOST = 0.75, 1.3  # no draw is smaller than this share of the 5th percentile, or larger than this multiple of the 95th
 ROUNDS = 6
+SERIES = "series"  # group of styles.yaml
 
 
 def draw_sizes(rng: np.random.Generator, size: Size, count: int, rounds: Sequence[bool] = ()) -> NDArray[np.float64]:
@@ -139,6 +140,11 @@ class Catalogue:
     partnet: tuple[Model, ...]
 
 
+def series_rng(style_name: str) -> np.random.Generator:
+    """Return the generator of what all units of a series share: one kitchen looks the same in every catalogue."""
+    return seeds.generator(0, "corpus.furniture.series", style_name)
+
+
 @functools.lru_cache(maxsize=8)
 def catalogue(seed: int, size: float = 1.0) -> Catalogue:
     """Return the models of a seed. `size` scales their number: 1 gives some 900 static and 350 articulated ones."""
@@ -159,7 +165,7 @@ def _models(seed: int, category: str, card: Corpus, count: int, *, articulated: 
     start = int(rng.integers(len(usable)))  # dealt round robin from there, so that each comes equally often
     names = [usable[(start + i) % len(usable)] for i in range(count)]
     forms = [card.forms[name] for name in names]
-    styles = [_style(rng, form) for form in forms]
+    styles = _series(rng, count) if card.series else [_style(rng, form) for form in forms]
     boxes = draw_sizes(rng, cards()[category].size, count, [form.round for form in forms])
     _raise(forms, boxes)
     models = []
@@ -198,6 +204,13 @@ def _style(rng: np.random.Generator, form: Form) -> str:
     names = styles_of(form)
     shares = np.array([STYLES[name].share for name in names])
     return str(rng.choice(names, p=shares / shares.sum()))
+
+
+def _series(rng: np.random.Generator, count: int) -> list[str]:
+    """Deal the styles in which kitchens are sold, so that each series has units of every category."""
+    names = style.load().groups[SERIES]
+    start = int(rng.integers(len(names)))
+    return [names[(start + k) % len(names)] for k in range(count)]
 
 
 def _assign_ids(seed: int, models: list[Model]) -> list[Model]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pipeline.corpus.furniture.bent import split_bent_quads
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
+from pipeline.corpus.furniture.catalogue import series_rng
 from pipeline.corpus.furniture.finishes import COLORS, Finish, Finishes, Material, draw_material, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, lid, panel, reach, top_button
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset
@@ -31,6 +32,7 @@ from pipeline.corpus.furniture.solids import (
 )
 from pipeline.corpus.furniture.storage import front_style
 
+WORKTOP = 0.9  # height at which one works in a kitchen [m]
 PLINTH = 0.1  # height of a kitchen unit's recessed plinth [m]
 NOSE = 0.018  # how far a worktop stands out over its fronts [m]
 LEAF = 0.04  # thickness of a leaf [m]
@@ -38,7 +40,7 @@ LEVER = 0.055  # how far a lever stands out of its leaf [m]
 
 
 def unit_style(rng: np.random.Generator, finishes: Finishes, panels: str = "") -> Case:
-    """Draw how a kitchen unit is made: white carcass boards, a stone or wooden counter, fronts that cover the edges."""
+    """Draw how a unit is made: boards of the body's finish, a stone or wooden counter, fronts that cover the edges."""
     style = front_style(rng, finishes, panels)
     counter = draw_material(rng, "stone", "marble", finishes.body)
     return Case(finishes.body, style, "plinth", PLINTH, "plastic", top=counter, top_thickness=0.038, nose=NOSE)
@@ -46,7 +48,7 @@ def unit_style(rng: np.random.Generator, finishes: Finishes, panels: str = "") -
 
 def kitchen_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a base unit with doors, drawers, a drawer over doors, or for a corner, under a counter."""
-    how = unit_style(rng, finishes)
+    how = unit_style(series_rng(finishes.style_name), finishes)
     count = max(1, round(w / 0.6))
     door = Cell("left" if rng.random() < 0.5 else "right", 1.0, 1)
     if form == "drawers":
@@ -63,7 +65,9 @@ def kitchen_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: 
 
 def wall_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a wall unit with doors, plain or glazed, or with fronts that lift."""
-    how = replace(unit_style(rng, finishes, "glass" if form == "glass" else ""), feet="none", feet_height=0.0, nose=0.0)
+    how = replace(
+        unit_style(series_rng(finishes.style_name), finishes, "glass" if form == "glass" else ""), feet="none", feet_height=0.0, nose=0.0
+    )
     how = replace(how, top=finishes.body, top_thickness=0.018)
     count = max(1, round(w / 0.9))
     if form == "lift":
@@ -74,7 +78,7 @@ def wall_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: flo
 
 def tall_unit(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a unit as tall as the room's doors: a larder of two doors, one that is pulled out, or doors over drawers."""
-    how = replace(unit_style(rng, finishes), top=finishes.body, top_thickness=0.018, nose=0.0)
+    how = replace(unit_style(series_rng(finishes.style_name), finishes), top=finishes.body, top_thickness=0.018, nose=0.0)
     side = "left" if rng.random() < 0.5 else "right"
     door = Cell("pair" if w > 0.75 else side, 1.0, 3)  # type: ignore[arg-type]
     cells: tuple[Cell, ...]
@@ -119,9 +123,8 @@ def _sink_into_top(shape: Shape, hole_x: Interval, hole_y: Interval, basin: Piec
 
 def sink_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a base unit whose counter holds a bowl and a tap, over doors or a deep drawer."""
-    tall = 0.28 if rng.random() < 0.5 else 0.22
-    body = max(h - tall, 0.62)  # the tap stands above the counter
-    how = unit_style(rng, finishes)
+    body = min(WORKTOP, h - 0.2)  # the tap stands above the counter
+    how = unit_style(series_rng(finishes.style_name), finishes)
     cells: tuple[Cell, ...] = (Cell("pair" if w > 0.56 else "left", 1.0, 0),)
     if form == "drawer":  # the bowl leaves no room for a drawer above
         cells = (Cell("blank", 0.5), Cell("drawer", 0.9))

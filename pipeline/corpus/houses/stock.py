@@ -9,13 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline import style
+from pipeline.card import cards
 from pipeline.corpus.furniture.assembly import shape_of
-from pipeline.corpus.furniture.catalogue import Model
+from pipeline.corpus.furniture.catalogue import SERIES, Model
 
 LEVEL = 1e-4  # vertices within this height of the highest lie on the top [m]
 LEAST = 0.07  # narrowest top that anything lies on [m]
 SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)  # what share of a top's bounds is tried: all of a board, two thirds of a disc
 STYLE_WEIGHT = 3.0  # how much likelier a model in the house's own style is taken than another
+SERIES_WEIGHT = 60.0  # the same of the series that the house's kitchen is of
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,19 +72,26 @@ class Stock:
             self.by_category[model.category].append(model)
         self.styles = tuple(sorted({m.style for m in models if m.style}))
 
-    def pick(self, rng: np.random.Generator, category: str, style: str, most: Sequence[float], narrowest: float = 0.0) -> Model | None:
+    def pick(self, rng: np.random.Generator, category: str, style_name: str, most: Sequence[float], narrowest: float = 0.0) -> Model | None:
         """Draw a model of a category no larger than `most` (w, d, h) and no narrower than that [m]; None if there is none."""
         models = self.by_category.get(category, ())
         fitting = [m for m in models if m.size[0] >= narrowest and all(a <= b for a, b in zip(m.size, most, strict=True))]
         if not fitting:
             return None
-        weights = [STYLE_WEIGHT if m.style == style else 1.0 for m in fitting]
+        series = cards()[category].corpus.series
+        wanted, more = (self._series_of(style_name), SERIES_WEIGHT) if series else (style_name, STYLE_WEIGHT)
+        weights = [more if m.style == wanted else 1.0 for m in fitting]
         mark = rng.random() * sum(weights)
         for model, weight in zip(fitting, weights, strict=True):
             mark -= weight
             if mark <= 0:
                 return model
         return fitting[-1]
+
+    def _series_of(self, style_name: str) -> str:
+        """Return the series of kitchen units that goes with a house's style: its own where there is one."""
+        names = style.load().groups[SERIES]
+        return style_name if style_name in names or style_name not in self.styles else names[self.styles.index(style_name) % len(names)]
 
     def least(self, category: str) -> tuple[float, float]:
         """Return the smallest width and depth among a category's models [m]; infinite if there is none."""
