@@ -302,6 +302,9 @@ def compare(c: Clause, k: int, e: Mark) -> int:
     if left and right:
         for said in filter(None, (e, c.factor)):
             c.state.understood(said.first, said.last)
+        if e.value == "equal" and c.factor is None and c.negative is None:
+            c.state.say("area_equal", (*left, *right), (), e, LIKE)
+            left = ()
         turned = (e.value == "smaller") != (value < 1.0)
         a, b = (right, left) if turned != (c.negative is not None) else (left, right)  # "half the size of", "not larger than"
         for x in a:

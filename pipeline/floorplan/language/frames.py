@@ -3,7 +3,7 @@
 A frame is `pattern => reading`. Atoms of a pattern: `A` ... `D` a noun phrase (`A:bedroom` of that type), `L` a list of two or more, `X`, `Y` a list of one or more,
 `^` and `$` the ends of a clause, else a kind of mark (`flag`), a kind with its value (`cue/has`), or a sign, a closed class of words that a lexicon lists under
 `signs`; `a|b` either, `a?` it or nothing, `n=a` with a name. Words that mean nothing may stand between atoms. A reading is made of the phrases, of what has a name
-(`n>kind/value`: as another kind of mark, whole where it is a number, `n>flip`: with its bound turned round, `n>total`: as the home's, `n>bedroom`: as the bedroom of those people, `n>@o`: as
+(`n>kind/value`: as another kind of mark, whole where it is a number, `n>flip`: with its bound turned round, `n>less`: one less, `n>total`: as the home's, `n>bedroom`: as the bedroom of those people, `n>@o`: as
 the bedroom of `o`, `n>=m`: with the number of `m`) and of marks to be read in place of the words; what stood
 between them is consumed. No frame belongs to a language: word order and words do.
 """
@@ -246,6 +246,8 @@ def _change_mark(mark: Mark, change: str) -> Mark:
     """Return a mark read as something else."""
     if change == "flip":
         return replace(mark, bound="most" if mark.bound == "least" else "least")
+    if change == "less":
+        return replace(mark, number=mark.number - 1)
     if change == "total":
         return replace(mark, total=True)
     if change == "bedroom":
