@@ -29,6 +29,7 @@ LONGEST = 20_000  # characters
 MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
 LONGEST_LIST = 400  # characters of a list of wishes
 FARTHEST = 24  # characters between a wish and the room that follows it
+LARGE = 8  # a number from here on is a size or a count, and missed where nothing took it
 CLOSE = 4  # the same where nothing but a particle stands between
 EMPTY = kinds("empty")
 READ = {"used"}  # what was read with its neighbours
@@ -162,7 +163,8 @@ def _says(state: Reading, tokens: Sequence[Token], k: int) -> bool:
     head = next((m for m in tokens[k + 1 :] if m.kind not in LEADING | {"owner", "word"}), None)
     if token.kind in LEADING and head is not None and head.kind == "home":
         return False  # "a shared student flat"
-    return not (token.kind == "num" and ahead is not None and ahead.kind in {"owner", "fill", "word", "verb"})  # "three generations"
+    few = token.kind == "num" and token.number < LARGE  # "three generations"
+    return not (few and ahead is not None and ahead.kind in {"owner", "fill", "word", "verb"})
 
 
 # the rooms that wishes for furniture are for
