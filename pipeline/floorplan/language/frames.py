@@ -14,6 +14,7 @@ import functools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
@@ -246,19 +247,17 @@ def _items(tokens: Sequence[Token]) -> Iterator[Token]:
 
 def _change_token(token: Token, change: str) -> Token:
     """Return a token read as something else."""
-    if change == "flip":
-        return replace(token, bound="most" if token.bound == "least" else "least")
-    if change == "less":
-        return replace(token, number=token.number - 1)
-    if change == "total":
-        return replace(token, total=True)
     if change == "bedroom":
         return replace(token, kind="room", value=f"bedroom/{token.value}", number=0.0, text=f"bedroom_{token.text}")
-    if change == "room":
-        return replace(token, kind="room")
     kind, _, value = change.partition("/")
     number = float(int(max(token.number, 1.0))) if kind == "num" else token.number
-    return replace(token, kind=kind, value=value, number=number) if change else token
+    said: dict[str, Any] = {
+        "flip": {"bound": "most" if token.bound == "least" else "least"},
+        "less": {"number": token.number - 1},
+        "total": {"total": True},
+        "room": {"kind": "room"},
+    }
+    return replace(token, **said.get(change, {"kind": kind, "value": value, "number": number})) if change else token
 
 
 # word order: relations in two parts

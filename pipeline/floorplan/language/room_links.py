@@ -109,7 +109,6 @@ def join(draft: Draft, state: Reading) -> None:
 
 def _give(draft: Draft, stock: Inventory, thing: str, owner: str, fact: Fact) -> None:
     draft.link(owner, thing, "door", fact)
-    stock.belongings.add(thing)
     if stock.get(thing).type in {"bathroom", "wc"} and stock.get(owner).type != "hallway":
         draft.relate("degree", thing, None, 1.0, fact)
         if stock.get(owner).type == "bedroom":

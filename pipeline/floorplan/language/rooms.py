@@ -361,9 +361,9 @@ def _introduce_rooms(state: Reading, sentence: list[Token], k: int, level: int |
     elif not role and slots:
         if len(slots) == count == len(same) and count > 1:
             return slots
-        distinct = all(r.whole for r in slots) or (e.number and count < len(slots))
+        distinct = all(r.whole for r in slots) or (e.number and count < len(slots) and "another" not in e.det)
         listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")
-        if distinct and "another" not in e.det and count <= len(slots) and (listed is None or listed is sentence[k - 1]):  # "two bedrooms: one bedroom with"
+        if distinct and count <= len(slots) and (listed is None or listed is sentence[k - 1]):  # "two bedrooms: one bedroom with"
             return [close(r, "", e.text, level) for r in slots[:count]]
     if same and count == 1 and not e.number and not role and e.type in ALONE and "another" not in e.det:
         return same[:1]

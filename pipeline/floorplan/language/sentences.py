@@ -33,7 +33,6 @@ def read(state: Reading, sentence: list[Token]) -> None:
 
 def _np(c: Clause, k: int, e: Token) -> None:
     if e.banned:
-        c.state.understood(e.first, e.last)
         if not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and "/" in e.value) and e.role != "ensuite":
             c.state.banned.append((e.type, e))  # "no guest room" leaves the other bedrooms, "no kitchen-diner" a kitchen
         return
@@ -133,7 +132,6 @@ def _enter(c: Clause, k: int, e: Token) -> int:
 def _pron(c: Clause, k: int, e: Token) -> None:
     """Read a pronoun: the rooms that it stands for are spoken of next."""
     group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
-    e.ids = group
     if group:
         c.stands_for(e, group)
         c.subject = group if e.value != "it" or not c.subject else c.subject
@@ -148,7 +146,7 @@ def _det(c: Clause, k: int, e: Token) -> None:
         c.subject = c.run[-1].ids if again else ids_of(c.run)
         c.stands_for(e, c.subject)
     elif e.value == "each" and c.ends(k + 1) and before is not None and before.kind == "np" and len(c.latest) == 1 and not c.objects:
-        return  # "a bathroom for each": of whom is not told
+        return  # "a bathroom for each": of whom is not said
     elif e.value == "other" and kind in {"level", "verb"} and not any(r.open_slot for r in c.stock.of(c.state.parted)):
         c.push(k, e, ("*",))
     elif e.value in {"other", "both", "each", "all"} and kind != "np":
@@ -203,7 +201,6 @@ def relate(c: Clause, k: int, e: Token) -> int | None:  # noqa: PLR0911 - one an
         j += 1  # "the bath one reaches from the hall"
     elif e.value == "from" and (ahead := c.ahead(j, "verb", "det", "flag", "adj", "word", "pron")) is not None and ahead.value == "leads":
         c.goes_on(group)
-        c.objects = ()
         return j
     if not left:  # "off the foyer are a wc and the living room"
         c.waiting = (e, group)
@@ -277,8 +274,6 @@ def except_rooms(c: Clause, k: int, e: Token) -> int:
 def through(c: Clause, k: int, e: Token) -> int:
     """Read "you pass through the dining room to reach the kitchen", and what must not be so."""
     first, j = c.after(k + 1, "door", ())
-    while first and (x := c.near(j)) is not None and x.kind in {"verb", "comma"}:
-        j += 1
     second, j = c.after(j, "leads" if e.value == "thru" else "door", first) if first else ((), k + 1)
     if not second:
         return max(j, k + 1)

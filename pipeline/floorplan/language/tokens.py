@@ -1,5 +1,6 @@
 """From characters to tokens: the phrases of a prompt with their meaning, numbers and amounts put together."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -13,8 +14,8 @@ PUNCTUATION = {",": "comma", ":": "colon", "(": "open", ")": "close", "/": "slas
 ENDS = {"stop", "line"}  # kinds of tokens that end a sentence
 HEADS = {"room", "suite"}
 LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a head
-FEET, SQUARE_FEET = 0.3048, 0.092903
-USUAL_HEIGHT = 15.0  # a length from here on, said of a room or a home, is an area ("60 metros")
+# metres or feet in a length -> square metres in that of an area, and from how many on those of a room or a home are square ones ("60 metros")
+SQUARES = {1.0: (1.0, 8.0), 0.3048: (0.092903, 49.0)}
 BOUNDS = {"least": "least", "or_more": "least", "most": "most", "or_less": "most"}
 ARROWS = {"<->", "->", "=>", "→"}
 
@@ -261,9 +262,11 @@ class _Amount:
         factor, value = unit.number, unit.value
         if side is not None and value == "length":
             return Token("amount", "area", low * factor * factor, bound=self.bound, side=side * factor), i
-        extent = any(m.text in self.lex.sign("extent") or m.value == "wide" for m in self.tokens[i : i + 2])  # "20 m high", "20 m de ancho"
-        if value == "length" and not extent and factor >= FEET - 0.01 and low * factor >= USUAL_HEIGHT:
-            value, factor = "area", (1.0 if factor == 1.0 else SQUARE_FEET)
+        around = [*self.tokens[max(k - 1, 0) : k], *self.tokens[i : i + 2]]
+        extent = any(t.text in self.lex.sign("extent") or t.value == "wide" for t in around)  # "20 m high", "20 m de ancho"
+        square, least = SQUARES.get(factor, (0.0, math.inf))
+        if value == "length" and not extent and low >= least:
+            value, factor = "area", square
         top = None if high is None else high * factor
         return Token("amount", value, low * factor, high=top, bound=self.bound, total=self.total), i
 

@@ -87,8 +87,9 @@ def test_common_words_stay_as_they_are(language):
     raw = yaml.safe_load((FOLDER / f"{language}.yaml").read_text(encoding="utf-8"))
     words = [fold(w.strip()) for w in raw["common"].split(",")]
     assert len(words) > 200
-    words = read_words(" ".join(words), language)
-    assert words.texts == [lexicon(language).tenses.get(w, w) for w in words]  # verbs in the one tense that is read
+    assert read_words(" ".join(words), language).texts == [
+        lexicon(language).tenses.get(w, w) for w in words
+    ]  # verbs in the one tense that is read
 
 
 @pytest.mark.parametrize("word", ["house", "couch", "both", "tall", "without", "xylophone", "flibbertigibbet"])
