@@ -254,8 +254,9 @@ class Clause:
             return True
         if (cue == "open" and e.type in PRIVATE and not e.definite) or (cue == "cmp" and "equal" in e.adjectives):
             return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
-        if ahead is not None and self._starts(ahead):
-            return False
+        gives = ahead is not None and ahead.kind == "cue" and (ahead.value not in {"except", "has"} or self.says(ahead, "having"))
+        if gives or (ahead is not None and ahead.kind in {"verb", "cmp", "neg", "factor"}):
+            return False  # the phrase is the subject of a statement of its own
         if cue == "leads" and joined == "comma":
             halls = bool(self.types(self.latest or self.subject) & HALLS)
             if self.relative and e.introduces and first.definite and not halls:
@@ -269,12 +270,6 @@ class Clause:
         if cue in FRONT and e.introduces:
             return "indefinite" in first.det and cue == "near"
         return e.definite or not first.definite or cue == "open"
-
-    def _starts(self, ahead: Token) -> bool:
-        """Whether what follows a phrase makes it the subject of a statement of its own."""
-        if ahead.kind == "cue":
-            return ahead.value not in {"except", "has"} or self.says(ahead, "having")
-        return ahead.kind in {"verb", "cmp", "neg", "factor"}
 
 
 # sizes against each other
@@ -378,14 +373,13 @@ def measures_home(c: Clause, k: int, token: Token, ids: Group, set_off: bool) ->
 def attach(c: Clause, k: int, token: Token, *, home: bool = False) -> None:
     """Attach an amount that stands by itself, or behind the word for the home."""
     state = c.state
-    around = c.sentence[max(0, k - 2) : k + 2]
     before, ahead = c.near(k - 1), c.near(k + 1)
     rooms = () if home else named_rooms(c.latest)
     if token.value == "storeys":
         state.storeys = state.storeys or ((int(token.number), token) if token.number >= 1 else None)
     elif token.value == "rooms":  # of one and a half, the half is to sleep in
         state.rooms = state.rooms or (2 if token.number == 1.5 else int(token.number), token)
-    elif token.total or any(x.kind == "flag" and x.value == "total" for x in around):
+    elif token.total or any((x.kind, x.value) == ("flag", "total") for x in c.sentence[max(0, k - 2) : k + 2]):
         state.amounts.append((token, None))
     elif token.value == "length":
         named = next((x for x in reversed(c.sentence[:k]) if x.kind == "np" or x.value in NAMED), None)

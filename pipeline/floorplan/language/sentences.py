@@ -131,7 +131,9 @@ def _enter(c: Clause, k: int, e: Token) -> int:
 
 def _pron(c: Clause, k: int, e: Token) -> None:
     """Read a pronoun: the rooms that it stands for are spoken of next."""
-    group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
+    behind = c.near(k + 2) if e.value == "one" and (ahead := c.near(k + 1)) is not None and ahead.kind == "verb" else None
+    named = behind.ids if behind is not None else ()  # "one is a guest room"
+    group = named or c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
     if group:
         c.stands_for(e, group)
         c.subject = group if e.value != "it" or not c.subject else c.subject
@@ -365,8 +367,9 @@ def _theirs(c: Clause, j: int, owners: Group, joined: str) -> bool:
     if x.role in {"shared", "guest"} or known or number > len(owners) or 1 < number < len(owners):
         return False
     if joined == "comma" and not own:
-        rest = next((y for y in c.sentence[j + 1 :] if not (y.kind in {"comma", "det"} or (y.kind == "np" and y.type in PERSONAL))), None)
-        return rest is not None and rest.kind == "and"  # "with a bath, closet and balcony"
+        rest = [y for y in c.sentence[j + 1 :] if not (y.kind in {"comma", "det"} or (y.kind == "np" and y.type in PERSONAL))]
+        last = next((y for y in c.sentence if rest and y.kind == "np" and y.first >= rest[0].last), None)
+        return bool(rest) and rest[0].kind == "and" and (last is None or last.type in PERSONAL)  # "with a bath, closet and balcony"
     return not joined or own or not ("another" in x.det or x.number or x.type == "wc")
 
 
