@@ -8,7 +8,7 @@ from pipeline.floorplan.language.furnishing import read_furniture
 from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
 from pipeline.floorplan.language.parser import Mention, attach, check_length, room_mentions, understand_rooms
 from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.text import fold, tokenize
+from pipeline.floorplan.language.text import fold, split_words
 from pipeline.floorplan.program.consistency import ImpossibleError, check_furniture
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, RoomReq, Span
 from pipeline.floorplan.program.furniture import allot_pieces, spread
@@ -44,9 +44,9 @@ def _unknown(plain: str, prompt: str) -> Iterator[Span]:
         known = lexicon(detect(prompt)).vocabulary
     except RefusedError:  # wishes alone tell no language
         known = set().union(*(lexicon(language).vocabulary for language in LANGUAGES))
-    for token in tokenize(plain):
-        if token.text[0].isalpha() and fold(token.text) not in known:
-            yield Span(start=token.start, end=token.end, text=prompt[token.start : token.end])
+    for word in split_words(plain):
+        if word.text[0].isalpha() and fold(word.text) not in known:
+            yield Span(start=word.start, end=word.end, text=prompt[word.start : word.end])
 
 
 def _in_plan(program: FloorProgram, said: FloorProgram, prompt: str) -> list[Mention]:

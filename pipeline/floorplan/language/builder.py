@@ -6,9 +6,9 @@ from typing import Any
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.lexicon import kinds
-from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.room_links import Draft, join
 from pipeline.floorplan.language.rooms import HALLS, Fact, Named, Reading
+from pipeline.floorplan.language.tokens import Token
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
 from pipeline.floorplan.program.floor_program import MAX_ROOMS, Accessibility, FloorProgram, Shell, Style
@@ -31,9 +31,9 @@ GROUND = kinds("ground")
 SORTS = kinds("sorts")
 
 
-def assemble(state: Reading, parsed: list[list[Mark]]) -> FloorProgram:
+def assemble(state: Reading, parsed: list[list[Token]]) -> FloorProgram:
     """Return the program of what was read; nothing is filled in."""
-    draft, stock = Draft(state.heard), state.inventory
+    draft, stock = Draft(state.words), state.inventory
     _count(draft, state)
     _studio(draft, state)
     for kind, e in state.banned:
@@ -52,7 +52,7 @@ def assemble(state: Reading, parsed: list[list[Mark]]) -> FloorProgram:
         theirs = [r.id for kind in ("kitchen", "bedroom") for r in stock.of(kind) if r.role in STRANGERS]
         draft.fields["entrance"] = {**draft.fields.get("entrance", {}), "separate": [i for i in (*theirs, owner) if i][:1]}
         draft.cite(e.first, e.last, "entrance.separate")
-    named, known = Draft(state.heard), {r.id for r in stock.rooms}
+    named, known = Draft(state.words), {r.id for r in stock.rooms}
     for e in (e for s in parsed for e in s if e.kind in {"np", "pron", "det"} and e.last > e.first):
         for i in (i for i in e.ids if i in known):
             named.cite(e.first, e.last, f"rooms.{i}")
@@ -64,7 +64,7 @@ def assemble(state: Reading, parsed: list[list[Mark]]) -> FloorProgram:
             "forbids": draft.forbids,
             "relations": draft.relations,
             "zones": draft.zones,
-            "language": state.heard.lexicon.language,
+            "language": state.words.lexicon.language,
             "evidence": [*named.evidence, *draft.evidence],
         }
     )
@@ -90,17 +90,17 @@ def _count(draft: Draft, state: Reading) -> None:
         if state.people is not None and state.studio is None:
             _bedrooms(draft, state, state.people)
         return
-    count, mark = state.rooms
-    draft.cite(mark.first, mark.last, "rooms")
+    count, token = state.rooms
+    draft.cite(token.first, token.last, "rooms")
     if count > MAX_ROOMS:
         raise RefusedError(f"{count} rooms are asked for", f"ask for {MAX_ROOMS} at most")
-    lex = state.heard.lexicon
+    lex = state.words.lexicon
     usual = "counts_living_rooms" in lex.traits  # there "three rooms" is how one says what is to live and to sleep in
     # elsewhere "six rooms: three bedrooms, ..." lists all, but "three rooms, kitchen, bath" does not
-    listed = any(mark.text.endswith(t) for t in lex.sign("all_rooms")) if usual else count <= len(stock.rooms)
+    listed = any(token.text.endswith(t) for t in lex.sign("all_rooms")) if usual else count <= len(stock.rooms)
     if count <= MOST_COUNTED and not listed:
         known = list(stock.rooms)
-        _living_rooms(draft, state, count, mark)
+        _living_rooms(draft, state, count, token)
         for room in stock.rooms:
             room.stated &= usual or room in known
     elif count > 1:
@@ -110,7 +110,7 @@ def _count(draft: Draft, state: Reading) -> None:
         draft.fields["only"] = True
 
 
-def _bedrooms(draft: Draft, state: Reading, people: Mark) -> None:
+def _bedrooms(draft: Draft, state: Reading, people: Token) -> None:
     """Add the bedrooms that so many people take, of which nobody stated how many there are: one for each who shares a flat, one for two where so many sleep, else one for two and one for each of the others."""
     stock = state.inventory
     if stock.of("studio_room") or any(r.role not in {"child", *STRANGERS} for r in stock.of("bedroom")):
@@ -122,13 +122,13 @@ def _bedrooms(draft: Draft, state: Reading, people: Mark) -> None:
     draft.cite(people.first, people.last, "rooms")
 
 
-def _living_rooms(draft: Draft, state: Reading, count: int, mark: Mark) -> None:
+def _living_rooms(draft: Draft, state: Reading, count: int, token: Token) -> None:
     """Count rooms to live and sleep in: three are a living room and two bedrooms; one is a studio."""
     stock = state.inventory
     beds = [r for r in stock.of("bedroom") if r.stated]
     if len(beds) > count:
         what = f"{len(beds)} bedrooms are asked for in a home of {count} rooms"
-        draft.refuse(what, "keep one of the two counts", [(mark.first, mark.last), *(r.span for r in beds)])
+        draft.refuse(what, "keep one of the two counts", [(token.first, token.last), *(r.span for r in beds)])
     if count == 1 and not stock.of("bedroom"):
         state.studio = state.studio or (state.homes[0] if state.homes else None)
         if not stock.of("studio_room") and not stock.of("living_room"):
@@ -163,41 +163,41 @@ def _studio(draft: Draft, state: Reading) -> None:
 
 def _amounts(draft: Draft, state: Reading) -> None:
     """Attach areas, widths and heights."""
-    for mark, ids in state.amounts:
+    for token, ids in state.amounts:
         rooms = [state.inventory.get(i) for i in ids or () if i[0] != "*"]
         if ids == ("*",):
-            rooms = [r for r in state.inventory.rooms if r.type not in SMALL or mark.bound == "most"]
-        if mark.value == "area" and mark.number > 0:
+            rooms = [r for r in state.inventory.rooms if r.type not in SMALL or token.bound == "most"]
+        if token.value == "area" and token.number > 0:
             for room in rooms:
-                _area(draft, mark, room)
+                _area(draft, token, room)
             if not rooms:
-                _total(draft, mark)
-        elif mark.value in MEASURED or (mark.value == "length" and rooms):
-            _length(draft, mark, rooms)
+                _total(draft, token)
+        elif token.value in MEASURED or (token.value == "length" and rooms):
+            _length(draft, token, rooms)
 
 
-def _range(mark: Mark) -> dict[str, float]:
-    if mark.high is not None:
-        return {"min": mark.number, "max": mark.high}
-    return {{"least": "min", "most": "max"}.get(mark.bound, "target"): mark.number}
+def _range(token: Token) -> dict[str, float]:
+    if token.high is not None:
+        return {"min": token.number, "max": token.high}
+    return {{"least": "min", "most": "max"}.get(token.bound, "target"): token.number}
 
 
-def _area(draft: Draft, mark: Mark, room: Named) -> None:
-    box = _range(mark)
+def _area(draft: Draft, token: Token, room: Named) -> None:
+    box = _range(token)
     room.low, room.high, room.target = box.get("min", room.low), box.get("max", room.high), box.get("target", room.target)
-    room.min_width = mark.side if mark.side is not None else room.min_width
-    draft.cite(mark.first, mark.last, f"rooms.{room.id}.area")
+    room.min_width = token.side if token.side is not None else room.min_width
+    draft.cite(token.first, token.last, f"rooms.{room.id}.area")
     if room.low is not None and room.high is not None and room.low > room.high:
         what = f"{room.id} is to have at least {room.low:g} and at most {room.high:g} m²"
         raise ImpossibleError(what, "keep one of the two", draft.citations(f"rooms.{room.id}.area"))
 
 
-def _total(draft: Draft, mark: Mark) -> None:
-    box = _range(mark)
+def _total(draft: Draft, token: Token) -> None:
+    box = _range(token)
     if "target" in box:
         box |= {"min": box["target"] * (1 - ABOUT), "max": box["target"] * (1 + ABOUT)}
     old = draft.fields.get("total_area", {})
-    draft.cite(mark.first, mark.last, "total_area")
+    draft.cite(token.first, token.last, "total_area")
     low = max((x for x in (old.get("min"), box.get("min")) if x is not None), default=None)
     high = min((x for x in (old.get("max"), box.get("max")) if x is not None), default=None)
     if low is not None and high is not None and low > high * (1 + SAME):
@@ -205,21 +205,21 @@ def _total(draft: Draft, mark: Mark) -> None:
     draft.fields["total_area"] = {**(old or box), "min": low, "max": high, "stated": True}
 
 
-def _length(draft: Draft, mark: Mark, rooms: Sequence[Named]) -> None:
+def _length(draft: Draft, token: Token, rooms: Sequence[Named]) -> None:
     """Note a length. Refuses one that nothing of its kind has; "at least" less than the least is met by that."""
-    what = "corridors" if mark.value == "length" and any(r.type in HALLS for r in rooms) else mark.value
+    what = "corridors" if token.value == "length" and any(r.type in HALLS for r in rooms) else token.value
     part = "shell" if what in SHELL else "accessibility" if what in MEASURED else "rooms"
     known = (Shell.model_fields | Accessibility.model_fields)[MEASURED[what][0]].metadata if what in MEASURED else ()
     low, high = (known[0].ge, known[1].le) if known else WIDTHS
-    if mark.number > high or (mark.number < low and mark.bound != "least"):
+    if token.number > high or (token.number < low and token.bound != "least"):
         name = what.replace("_", " ") if known else "a room"
-        draft.refuse(f"{name} of {mark.number:g} m", f"ask for {low:g} to {high:g} m", [(mark.first, mark.last)], part)
+        draft.refuse(f"{name} of {token.number:g} m", f"ask for {low:g} to {high:g} m", [(token.first, token.last)], part)
     for field in MEASURED.get(what, ()):
-        draft.cite(mark.first, mark.last, f"{part}.{field}")
-        draft.fields.setdefault(part, {}).update({field: max(mark.number, low)} | ({"stated": True} if what in SHELL else {}))
+        draft.cite(token.first, token.last, f"{part}.{field}")
+        draft.fields.setdefault(part, {}).update({field: max(token.number, low)} | ({"stated": True} if what in SHELL else {}))
     for room in () if known else rooms:
-        room.min_width = max(mark.number, low)
-        draft.cite(mark.first, mark.last, f"rooms.{room.id}.min_width")
+        room.min_width = max(token.number, low)
+        draft.cite(token.first, token.last, f"rooms.{room.id}.min_width")
 
 
 # the whole home
@@ -235,7 +235,7 @@ def _whole(draft: Draft, state: Reading) -> None:
         draft.cite(first, last, "storeys")
     if storeys > MOST_STOREYS:
         draft.refuse(f"{storeys} storeys are asked for", f"ask for {MOST_STOREYS} at most", said, "storeys")
-    bungalow = state.heard.lexicon.sign("bungalow")
+    bungalow = state.words.lexicon.sign("bungalow")
     single = [e for e in (flags.get("single"), *state.homes) if e is not None and (e.kind == "flag" or e.text in bungalow)]
     above = [(e.first, e.last) for e in state.levels if e.value != "0"] or said
     if storeys > 1 and single and above:
@@ -247,25 +247,25 @@ def _whole(draft: Draft, state: Reading) -> None:
     for room in stock.rooms if storeys == 1 else ():
         room.level = 0
 
-    def told(flag: str, field: str) -> bool:
+    def stated(flag: str, field: str) -> bool:
         if flag in flags:
             draft.cite(flags[flag].first, flags[flag].last, field)
         return flag in flags
 
-    fields |= {"only": True} if stock.rooms and told("closed", "only") else {}
-    fields |= {"scale": LUXURY} if told("luxury", "scale") else {}
+    fields |= {"only": True} if stock.rooms and stated("closed", "only") else {}
+    fields |= {"scale": LUXURY} if stated("luxury", "scale") else {}
     if "no_hall" in flags:
         draft.forbid("room_type", "hallway", None, None, Fact("ban", (), (), 0.0, flags["no_hall"].first, flags["no_hall"].last))
     for flag, outline in OUTLINES.items():
-        if told(flag, "footprint"):
+        if stated(flag, "footprint"):
             fields["footprint"] = {**fields.get("footprint", {}), **outline, "stated": True}
     access = fields.setdefault("accessibility", {})
     for flag in ("wheelchair", "step_free", "single"):
-        access |= {"step_free": True} if told(flag, "accessibility.step_free") else {}
+        access |= {"step_free": True} if stated(flag, "accessibility.step_free") else {}
     if "wheelchair" in flags:
         access |= {"min_door": max(access.get("min_door", 0.9), 0.9), "min_corridor": max(access.get("min_corridor", 1.2), 1.2)}
     for room in stock.of("living_room")[:1]:
-        room.exterior_length = PANORAMA if told("panorama", f"rooms.{room.id}.exterior_length") else None
+        room.exterior_length = PANORAMA if stated("panorama", f"rooms.{room.id}.exterior_length") else None
 
 
 def _levels(state: Reading) -> None:
@@ -288,7 +288,7 @@ def _style(draft: Draft, state: Reading) -> None:
         draft.cite(e.first, e.last, "scale")
     knobs: dict[str, int] = {}
     for e in state.looks:
-        look = state.heard.lexicon.looks[int(e.value)]
+        look = state.words.lexicon.looks[int(e.value)]
         knobs |= {knob: value for knob, value in look.knobs.items() if abs(value) > abs(knobs.get(knob, 0))}
         if look.nonrect:
             draft.fields["nonrect"] = look.nonrect

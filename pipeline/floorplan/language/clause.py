@@ -5,14 +5,14 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 
-from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.phrases import backward, heads
 from pipeline.floorplan.language.rooms import FRONT, HALLS, PRIVATE, Group, Reading, name
+from pipeline.floorplan.language.tokens import Token
 from pipeline.floorplan.program.defaults import DEFAULTS
 
 LIGHT = {"det", "size", "adj", "verb", "word", "flag"}  # between a relation and its room
 WIDE = {"leads", "between", "chain", "avoid", "except"}  # relations to lists
-STANDINS = {"it", "both", "group", "one", "rest", "some", "each", "all", "self", "pair"}
+ANAPHORA = {"it", "both", "group", "one", "rest", "some", "each", "all", "self", "pair"}
 LISTING = {"comma", "and", "or"}
 LIKE = 0.15  # two rooms are alike where they differ by less
 BESIDE = {"near", "wall"}  # what such a relation joins lies on one storey
@@ -25,7 +25,7 @@ def named_rooms(group: Group) -> Group:
     return tuple(i for i in group if not i.startswith("*"))
 
 
-def ids_of(phrases: Iterable[Mark]) -> Group:
+def ids_of(phrases: Iterable[Token]) -> Group:
     """Return the rooms of phrases, each once."""
     return tuple(dict.fromkeys(i for x in phrases for i in x.ids))
 
@@ -33,34 +33,34 @@ def ids_of(phrases: Iterable[Mark]) -> Group:
 class Clause:
     """The state of reading one sentence."""
 
-    def __init__(self, state: Reading, sentence: list[Mark]) -> None:
+    def __init__(self, state: Reading, sentence: list[Token]) -> None:
         self.state, self.sentence, self.stock = state, sentence, state.inventory
-        self.run: list[Mark] = []  # the list of phrases in front of the next relation
+        self.run: list[Token] = []  # the list of phrases in front of the next relation
         self.subject: Group = ()
         self.latest: Group = ()
         self.objects: Group = ()
-        self.waiting: tuple[Mark, Group] | None = None  # a relation in front of its subject: "next to the kitchen lies ..."
-        self.negative: Mark | None = None
+        self.waiting: tuple[Token, Group] | None = None  # a relation in front of its subject: "next to the kitchen lies ..."
+        self.negative: Token | None = None
         self.verb = self.relative = self.single = False
         self.owner = self.owning = ""  # "the grandparents", and their bedroom
-        self.only: Mark | None = None
-        self.factor: Mark | None = None
+        self.only: Token | None = None
+        self.factor: Token | None = None
         first = next((e for e in sentence if e.kind in {"np", "level", "zone", "every", "pron"} or e.value in {"other", "all"}), None)
         self.forward = first is not None and first.kind == "level"  # storeys stand in front of their rooms
         self.level: int | None = None
         self.left_out: Group = ()  # "except the guest room, each has ..."
 
-    def near(self, k: int) -> Mark | None:
+    def near(self, k: int) -> Token | None:
         """Return the element at k, None beyond the ends."""
         return self.sentence[k] if 0 <= k < len(self.sentence) else None
 
-    def ahead(self, k: int, *skipped: str) -> Mark | None:
+    def ahead(self, k: int, *skipped: str) -> Token | None:
         """Return the first element from k on that is of no skipped kind."""
         return next((x for x in self.sentence[k:] if x.kind not in skipped), None)
 
-    def says(self, e: Mark, sign: str) -> bool:
+    def says(self, e: Token, sign: str) -> bool:
         """Whether a word of an element belongs to a closed class."""
-        return bool(self.state.heard.lexicon.sign(sign) & set(e.text.split()))
+        return bool(self.state.words.lexicon.sign(sign) & set(e.text.split()))
 
     def ends(self, k: int) -> bool:
         """Whether a part of the sentence ends in front of k."""
@@ -82,17 +82,17 @@ class Clause:
         """Whether a negation stands just in front of the element at k."""
         return any(x.kind == "neg" for x in self.sentence[max(0, k - 3) : k])
 
-    def give(self, things: Group, owners: Group, e: Mark) -> None:
+    def give(self, things: Group, owners: Group, e: Token) -> None:
         """Let rooms belong to others."""
         self.stock.belongings.update(things)
         self.state.say("own", things, owners, e)
 
-    def measures(self, e: Mark) -> None:
+    def measures(self, e: Token) -> None:
         """Note the areas of a phrase."""
         self.state.amounts += self.shares(e, e.ids)
         e.amounts = []
 
-    def shares(self, e: Mark, ids: Group) -> list[tuple[Mark, Group | None]]:
+    def shares(self, e: Token, ids: Group) -> list[tuple[Token, Group | None]]:
         """Return the amounts of a phrase, each with its rooms: of several areas one each."""
         areas = [m for m in e.amounts if m.is_size]
         dealt = [(m, ids[k : k + 1] if len(areas) > 1 else ids) for k, m in enumerate(areas)]
@@ -103,12 +103,12 @@ class Clause:
         self.latest, self.objects, self.subject = rooms, objects or rooms, subject or rooms
         self.run, self.verb, self.relative = [], False, False
 
-    def stands_for(self, e: Mark, ids: Group) -> None:
+    def stands_for(self, e: Token, ids: Group) -> None:
         """Let an element that is no phrase be the list in front of the next relation."""
         e.ids = self.latest = ids
-        self.run = [Mark("np", first=e.first, last=e.last, text=e.text, ids=ids)]
+        self.run = [Token("np", first=e.first, last=e.last, text=e.text, ids=ids)]
 
-    def push(self, k: int, e: Mark, ids: Group) -> None:
+    def push(self, k: int, e: Token, ids: Group) -> None:
         """Take a group into the list in front of the next relation."""
         before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"det", "size", "adj"}), None)
         if before is None or not self.run or before.kind not in {*LISTING, "np", "amount", "open", "close"}:
@@ -126,7 +126,7 @@ class Clause:
         """Return the rooms of the phrase at k."""
         return name(self.state, self.sentence, k, backward(self.sentence, k, self.level if self.forward else None))
 
-    def point(self, e: Mark, k: int, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun
+    def point(self, e: Token, k: int, but: Group) -> Group:  # noqa: PLR0911 - one answer per pronoun
         """Return the rooms that a pronoun stands for: after "but" the subject still, as an object what is not the subject `but`."""
         if e.value == "it" and k and self.sentence[k - 1].kind == "but" and self.subject:
             return self.subject
@@ -158,7 +158,7 @@ class Clause:
 
     # who stands in front
 
-    def place(self, e: Mark) -> int:
+    def place(self, e: Token) -> int:
         """Return where an element stands."""
         return next((i for i, x in enumerate(self.sentence) if x is e), 0)
 
@@ -171,7 +171,7 @@ class Clause:
         """Return the rooms in front of a comparison: the last phrase, with those that an "and" joins to it."""
         return ids_of(self.run if self.coordinate() else self.run[-1:])
 
-    def subjects(self, k: int, e: Mark) -> Group:
+    def subjects(self, k: int, e: Token) -> Group:
         """Return who stands in front of a relation: the phrase, the list in front of a verb, or what the clause is about."""
         before = self.near(k - 1)
         if not self.run:
@@ -214,8 +214,8 @@ class Clause:
                 self.measures(e)
                 group += [i for i in ids if i not in group and i not in left]
                 first, joined, end = first or e, "", k + 1
-            elif not group and (standin := self._standin(k, e, left)) is not None:
-                return standin
+            elif not group and (anaphor := self._anaphor(k, e, left)) is not None:
+                return anaphor
             elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE and not (joined == "comma" and self.relative):
                 joined = "and"  # "leads to the bath and into the kitchen"
             elif e.kind in LISTING:
@@ -225,7 +225,7 @@ class Clause:
             k += 1
         return tuple(group), end
 
-    def _passed(self, e: Mark, named: bool, joined: str, cue: str) -> bool:
+    def _passed(self, e: Token, named: bool, joined: str, cue: str) -> bool:
         """Whether an element may stand inside the list behind a relation."""
         if e.kind in {"det", "size", "adj", "word", "owner", "relative"}:
             return True
@@ -234,10 +234,10 @@ class Clause:
             return True
         return (e.kind == "colon" and not named and cue == "leads") or (e.kind in {"verb", "open", "to"} and not named)
 
-    def _standin(self, k: int, e: Mark, left: Group) -> tuple[Group, int] | None:
+    def _anaphor(self, k: int, e: Token, left: Group) -> tuple[Group, int] | None:
         """Return the rooms that a pronoun, a zone or "everything" behind a relation stand for; None for other elements."""
         phrase = (ahead := self.near(k + 1)) is not None and ahead.kind == "np"
-        if e.kind in {"pron", "det"} and e.value in STANDINS and not (e.kind == "det" and phrase):
+        if e.kind in {"pron", "det"} and e.value in ANAPHORA and not (e.kind == "det" and phrase):
             return tuple(i for i in self.point(e, k, left) if i not in left), k + 1
         if e.kind == "zone":
             zone(self, k, e)
@@ -246,7 +246,7 @@ class Clause:
             return ("*",), k + 1
         return None
 
-    def _continues(self, k: int, cue: str, joined: str, first: Mark, count: int) -> bool:  # noqa: PLR0911 - one answer per case
+    def _continues(self, k: int, cue: str, joined: str, first: Token, count: int) -> bool:  # noqa: PLR0911 - one answer per case
         """Whether a list after a relation goes on with the phrase at k, or a new statement begins there."""
         e = self.sentence[k]
         ahead = self.ahead(k + 1, "det", "amount", "adj", "flag", "word")
@@ -254,8 +254,9 @@ class Clause:
             return True
         if (cue == "open" and e.type in PRIVATE and not e.definite) or (cue == "cmp" and "equal" in e.adjectives):
             return False  # "a kitchen open to the living room and a terrace": nothing stands open to these
-        if ahead is not None and self._starts(ahead):
-            return False
+        gives = ahead is not None and ahead.kind == "cue" and (ahead.value not in {"except", "has"} or self.says(ahead, "having"))
+        if gives or (ahead is not None and ahead.kind in {"verb", "cmp", "neg", "factor"}):
+            return False  # the phrase is the subject of a statement of its own
         if cue == "leads" and joined == "comma":
             halls = bool(self.types(self.latest or self.subject) & HALLS)
             if self.relative and e.introduces and first.definite and not halls:
@@ -270,24 +271,18 @@ class Clause:
             return "indefinite" in first.det and cue == "near"
         return e.definite or not first.definite or cue == "open"
 
-    def _starts(self, ahead: Mark) -> bool:
-        """Whether what follows a phrase makes it the subject of a statement of its own."""
-        if ahead.kind == "cue":
-            return ahead.value not in {"except", "has"} or self.says(ahead, "having")
-        return ahead.kind in {"verb", "cmp", "neg", "factor"}
-
 
 # sizes against each other
 
 
-def factor(c: Clause, k: int, e: Mark) -> int | None:
+def factor(c: Clause, k: int, e: Token) -> int | None:
     """Note a factor; "twice the living room" compares at once."""
     c.factor = e
     ahead = c.ahead(k + 1, "relative", "det")
     return compare(c, k, e) if ahead is not None and ahead.kind == "np" else k + 1
 
 
-def compare(c: Clause, k: int, e: Mark) -> int:
+def compare(c: Clause, k: int, e: Token) -> int:
     """Read "at least 1.5 times as large as the largest bedroom"."""
     left = c.rooms_in_front() or (c.objects if c.relative else ()) or c.subject
     if e.value == "alike":
@@ -302,6 +297,9 @@ def compare(c: Clause, k: int, e: Mark) -> int:
     if left and right:
         for said in filter(None, (e, c.factor)):
             c.state.understood(said.first, said.last)
+        if e.value == "equal" and c.factor is None and c.negative is None:
+            c.state.say("area_equal", (*left, *right), (), e, LIKE)
+            left = ()
         turned = (e.value == "smaller") != (value < 1.0)
         a, b = (right, left) if turned != (c.negative is not None) else (left, right)  # "half the size of", "not larger than"
         for x in a:
@@ -314,7 +312,7 @@ def compare(c: Clause, k: int, e: Mark) -> int:
 # where rooms lie: storeys and wings
 
 
-def level(c: Clause, k: int, e: Mark) -> None:
+def level(c: Clause, k: int, e: Token) -> None:
     """Put rooms on a storey: those named before it, or, where it comes first, those that follow."""
     c.state.levels.append(e)
     ahead = c.near(k + 1)
@@ -330,14 +328,14 @@ def level(c: Clause, k: int, e: Mark) -> None:
     c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
 
 
-def zone(c: Clause, k: int, e: Mark) -> None:
+def zone(c: Clause, k: int, e: Token) -> None:
     """Take the rooms of a zone into the list."""
     members = tuple(c.stock.zone(e.value))
     c.state.zones.setdefault(e.value, (members, e))
     c.push(k, e, members or (f"*zone_{e.value}",))
 
 
-def wing(c: Clause, _: int, e: Mark) -> None:
+def wing(c: Clause, _: int, e: Token) -> None:
     """Read "the bedrooms in one wing": they are a zone."""
     c.state.understood(e.first, e.last)
     ids, c.run = ids_of(c.run), []
@@ -350,51 +348,50 @@ def wing(c: Clause, _: int, e: Mark) -> None:
     c.state.wings += (name_of,)
 
 
-PLACES_AND_SIZES = {"level": level, "wing": wing, "zone": zone, "factor": factor, "cmp": compare}  # readers of kinds of marks
+PLACES_AND_SIZES = {"level": level, "wing": wing, "zone": zone, "factor": factor, "cmp": compare}  # readers of kinds of tokens
 
 
 # amounts
 
 
-def measures_home(c: Clause, k: int, mark: Mark, ids: Group, set_off: bool) -> bool:
+def measures_home(c: Clause, k: int, token: Token, ids: Group, set_off: bool) -> bool:
     """Whether an area is the home's: more than the rooms in front would take, right behind them or `set_off` by a comma."""
     rooms = [x for x in c.sentence if x.kind == "np"]
-    if mark.total:
+    if token.total:
         return True
-    if mark.value != "area" or not ids or sum(bool(x.amounts) for x in rooms) != (not set_off):
+    if token.value != "area" or not ids or sum(bool(x.amounts) for x in rooms) != (not set_off):
         return False
-    times = mark.number / sum(DEFAULTS[c.stock.get(i).type].area for i in ids)
+    times = token.number / sum(DEFAULTS[c.stock.get(i).type].area for i in ids)
     home = any(x.kind == "home" and not x.amounts for x in c.sentence[:k])
-    named = [x for x in rooms if x.first < mark.first]
+    named = [x for x in rooms if x.first < token.first]
     if set_off:
         return times > (LISTED if len(named) > 2 else MORE if home else LARGE if len(named) > 1 else math.inf)
     closes = len(named) == len(rooms) and (len(rooms) > 2 or home)
     return times > (LARGE if closes else HUGE if home else math.inf)
 
 
-def attach(c: Clause, k: int, mark: Mark, *, home: bool = False) -> None:
+def attach(c: Clause, k: int, token: Token, *, home: bool = False) -> None:
     """Attach an amount that stands by itself, or behind the word for the home."""
     state = c.state
-    around = c.sentence[max(0, k - 2) : k + 2]
     before, ahead = c.near(k - 1), c.near(k + 1)
     rooms = () if home else named_rooms(c.latest)
-    if mark.value == "storeys":
-        state.storeys = state.storeys or ((int(mark.number), mark) if mark.number >= 1 else None)
-    elif mark.value == "rooms":  # of one and a half, the half is to sleep in
-        state.rooms = state.rooms or (2 if mark.number == 1.5 else int(mark.number), mark)
-    elif mark.total or any(x.kind == "flag" and x.value == "total" for x in around):
-        state.amounts.append((mark, None))
-    elif mark.value == "length":
+    if token.value == "storeys":
+        state.storeys = state.storeys or ((int(token.number), token) if token.number >= 1 else None)
+    elif token.value == "rooms":  # of one and a half, the half is to sleep in
+        state.rooms = state.rooms or (2 if token.number == 1.5 else int(token.number), token)
+    elif token.total or any((x.kind, x.value) == ("flag", "total") for x in c.sentence[max(0, k - 2) : k + 2]):
+        state.amounts.append((token, None))
+    elif token.value == "length":
         named = next((x for x in reversed(c.sentence[:k]) if x.kind == "np" or x.value in NAMED), None)
         what = next((x.value for x in (named, ahead) if x is not None and x.value in NAMED), "")
-        state.amounts.append((replace(mark, value=what), None) if what else (mark, rooms or None))
-    elif mark.value == "area" and before is not None and (before.kind, before.value) == ("cue", "in") and not home:
-        state.amounts.append((mark, None))  # "ten rooms in 40 m2"
-    elif mark.value == "area" and c.latest == ("*",):
-        state.amounts.append((mark, c.latest))  # "every room at least 9 m2"
-    elif mark.value != "car":
+        state.amounts.append((replace(token, value=what), None) if what else (token, rooms or None))
+    elif token.value == "area" and before is not None and (before.kind, before.value) == ("cue", "in") and not home:
+        state.amounts.append((token, None))  # "ten rooms in 40 m2"
+    elif token.value == "area" and c.latest == ("*",):
+        state.amounts.append((token, c.latest))  # "every room at least 9 m2"
+    elif token.value != "car":
         before = next((x for x in reversed(c.sentence[:k]) if x.kind != "word"), None)
         set_off = before is not None and before.kind in {"comma", "and"}
-        limit = set_off and mark.bound in {"least", "most"} and c.objects == c.latest  # "a study near the bedroom, at least 10 m²"
+        limit = set_off and token.bound in {"least", "most"} and c.objects == c.latest  # "a study near the bedroom, at least 10 m²"
         rooms = (named_rooms(c.subject) if limit else ()) or rooms
-        state.amounts.append((mark, rooms if rooms and not (set_off and measures_home(c, k, mark, rooms, True)) else None))
+        state.amounts.append((token, rooms if rooms and not (set_off and measures_home(c, k, token, rooms, True)) else None))

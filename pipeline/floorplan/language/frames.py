@@ -1,10 +1,10 @@
 """Frames: patterns over concepts that say in one way what languages say in many; `manifests/lexicon/frames.yaml` holds them.
 
 A frame is `pattern => reading`. Atoms of a pattern: `A` ... `D` a noun phrase (`A:bedroom` of that type), `L` a list of two or more, `X`, `Y` a list of one or more,
-`^` and `$` the ends of a clause, else a kind of mark (`flag`), a kind with its value (`cue/has`), or a sign, a closed class of words that a lexicon lists under
+`^` and `$` the ends of a clause, else a kind of token (`flag`), a kind with its value (`cue/has`), or a sign, a closed class of words that a lexicon lists under
 `signs`; `a|b` either, `a?` it or nothing, `n=a` with a name. Words that mean nothing may stand between atoms. A reading is made of the phrases, of what has a name
-(`n>kind/value`: as another kind of mark, whole where it is a number, `n>flip`: with its bound turned round, `n>total`: as the home's, `n>bedroom`: as the bedroom of those people, `n>@o`: as
-the bedroom of `o`, `n>=m`: with the number of `m`) and of marks to be read in place of the words; what stood
+(`n>kind/value`: as another kind of token, whole where it is a number, `n>flip`: with its bound turned round, `n>less`: one less, `n>total`: as the home's, `n>bedroom`: as the bedroom of those people, `n>@o`: as
+the bedroom of `o`, `n>=m`: with the number of `m`) and of tokens to be read in place of the words; what stood
 between them is consumed. No frame belongs to a language: word order and words do.
 """
 
@@ -14,11 +14,12 @@ import functools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from pipeline import yaml_text
 from pipeline.errors import ContentError
 from pipeline.floorplan.language.lexicon import Lexicon
-from pipeline.floorplan.language.marks import ENDS, HEADS, LEADING, Mark, Words, sentences_of
+from pipeline.floorplan.language.tokens import ENDS, HEADS, LEADING, Token, Words, sentences_of
 
 FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "frames.yaml"
 PHRASES, LISTS = frozenset("ABCD"), frozenset("LXY")
@@ -30,7 +31,7 @@ MOST_SKIPPED = 3
 HOMES = {"large": 35.0, "vast": 60.0}  # [m2] from here on an area is no bedroom's, and no living room's
 ROOMY = 8.0  # [m2] a figure behind a room that is an area, and no count or name
 BREAKS = {"stop", "line", "colon", "comma"}
-FARTHEST = 14  # marks between the two parts of a bracket
+FARTHEST = 14  # tokens between the two parts of a bracket
 Slots = dict[str, tuple[int, int]]
 
 
@@ -46,7 +47,7 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Atom:
-    """What may stand at one place of a pattern: `names` of marks, or noun phrases (of `types`, where there are any) that fill `slot`."""
+    """What may stand at one place of a pattern: `names` of tokens, or noun phrases (of `types`, where there are any) that fill `slot`."""
 
     names: frozenset[str]
     optional: bool
@@ -78,11 +79,11 @@ def _atom(text: str) -> Atom:
     return Atom(frozenset(names.split("|")), text.endswith("?"), slot, frozenset(types.split(",")) if types else frozenset())
 
 
-def apply_frames(marks: Sequence[Mark], words: Words) -> list[Mark]:
-    """Return the marks with every frame that fits read."""
+def apply_frames(tokens: Sequence[Token], words: Words) -> list[Token]:
+    """Return the tokens with every frame that fits read."""
     signs = words.lexicon.signs
-    rewritten: list[Mark] = []
-    for sentence in sentences_of(marks):
+    rewritten: list[Token] = []
+    for sentence in sentences_of(tokens):
         said = sentence
         names = [_names(m, signs) for m in said]
         for frame in frames():
@@ -94,63 +95,63 @@ def apply_frames(marks: Sequence[Mark], words: Words) -> list[Mark]:
     return rewritten
 
 
-def _names(mark: Mark, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
-    """Return all that an atom may call a mark."""
-    own = {mark.kind, f"{mark.kind}/{mark.value}"}
-    if mark.kind == "room":
-        own |= set() if mark.plural else {"lone"}
-        own.add("room/" + mark.value.partition("/")[0])
-    elif mark.kind == "num":
-        own |= {"zero"} if not mark.number else {"two"} if mark.number == 2.0 else set()
-        own |= ({"many"} if mark.number > 1.0 else set()) | ({"halved"} if mark.number % 1.0 else set())
-        own |= {"roomy"} if mark.value == "figure" and mark.number >= ROOMY else set()
-    elif mark.kind == "size" and mark.number < 1.0:
+def _names(token: Token, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
+    """Return all that an atom may call a token."""
+    own = {token.kind, f"{token.kind}/{token.value}"}
+    if token.kind == "room":
+        own |= set() if token.plural else {"lone"}
+        own.add("room/" + token.value.partition("/")[0])
+    elif token.kind == "num":
+        own |= {"zero"} if not token.number else {"two"} if token.number == 2.0 else set()
+        own |= ({"many"} if token.number > 1.0 else set()) | ({"halved"} if token.number % 1.0 else set())
+        own |= {"roomy"} if token.value == "figure" and token.number >= ROOMY else set()
+    elif token.kind == "size" and token.number < 1.0:
         own.add("small")
-    elif mark.kind == "pron":
-        own |= ({"some"} if mark.number > 1.0 else set()) | ({"some_of"} if mark.value == "some" else set())
-    elif mark.kind == "amount":
-        own |= {"bounded"} if mark.bound in {"least", "most"} else set()
-        own |= {"plain_area"} if mark.is_size else set()
-        own |= {name for name, least in HOMES.items() if mark.value == "area" and mark.number >= least}
-        if mark.value == "rooms":
-            own |= signs.get(mark.text.rsplit(" ", 1)[-1], frozenset()) | ({"one_room"} if mark.number == 1.0 else set())  # "3 ZKB"
-    if mark.number == 1.0 and mark.kind in {"num", "pron", "ord"}:
+    elif token.kind == "pron":
+        own |= ({"some"} if token.number > 1.0 else set()) | ({"some_of"} if token.value == "some" else set())
+    elif token.kind == "amount":
+        own |= {"bounded"} if token.bound in {"least", "most"} else set()
+        own |= {"plain_area"} if token.is_size else set()
+        own |= {name for name, least in HOMES.items() if token.value == "area" and token.number >= least}
+        if token.value == "rooms":
+            own |= signs.get(token.text.rsplit(" ", 1)[-1], frozenset()) | ({"one_room"} if token.number == 1.0 else set())  # "3 ZKB"
+    if token.number == 1.0 and token.kind in {"num", "pron", "ord"}:
         own.add("single")
-    return signs.get(mark.text, frozenset()) | own
+    return signs.get(token.text, frozenset()) | own
 
 
-def _apply_frame(frame: Frame, marks: list[Mark], names: Sequence[frozenset[str]]) -> tuple[list[Mark], bool]:
+def _apply_frame(frame: Frame, tokens: list[Token], names: Sequence[frozenset[str]]) -> tuple[list[Token], bool]:
     """Return a sentence with a frame read wherever it fits, and whether it did."""
-    rewritten: list[Mark] = []
+    rewritten: list[Token] = []
     k = 0
-    reader = _Reader(marks, names, frame.atoms)
-    while k < len(marks):
+    reader = _Reader(tokens, names, frame.atoms)
+    while k < len(tokens):
         match = next(reader.fits(0, k, {}), None)
         if match is None or match[0] <= k:
-            rewritten.append(marks[k])
+            rewritten.append(tokens[k])
             k += 1
         else:
             end, slots = match
-            rewritten += _read(frame, marks, k, end, slots)
+            rewritten += _read(frame, tokens, k, end, slots)
             k = end
-    changed = len(rewritten) != len(marks) or any(a is not b for a, b in zip(rewritten, marks, strict=True))
-    return (rewritten, True) if changed else (marks, False)
+    changed = len(rewritten) != len(tokens) or any(a is not b for a, b in zip(rewritten, tokens, strict=True))
+    return (rewritten, True) if changed else (tokens, False)
 
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    marks: Sequence[Mark]
+    tokens: Sequence[Token]
     names: Sequence[frozenset[str]]
     atoms: Sequence[Atom]
 
     def fits(self, i: int, k: int, slots: Slots) -> Iterator[tuple[int, Slots]]:
-        """Yield where the atoms from i on may end when they begin at mark k, with the places of the phrases."""
+        """Yield where the atoms from i on may end when they begin at token k, with the places of the phrases."""
         if i == len(self.atoms):
             yield k, slots
             return
         atom = self.atoms[i]
-        for start in range(k, min(k + (MOST_SKIPPED if i else 0), len(self.marks)) + 1):
-            if start > k and self.marks[start - 1].kind not in SKIPPED:
+        for start in range(k, min(k + (MOST_SKIPPED if i else 0), len(self.tokens)) + 1):
+            if start > k and self.tokens[start - 1].kind not in SKIPPED:
                 break
             for end in self._one(atom, start):
                 yield from self.fits(i + 1, end, {**slots, atom.slot: (start, end)} if atom.slot else slots)
@@ -158,67 +159,69 @@ class _Reader:
             yield from self.fits(i + 1, k, slots)
 
     def _one(self, atom: Atom, k: int) -> Iterator[int]:
-        """Yield where one atom ends that begins at mark k."""
-        if "^" in atom.names and (k == 0 or self.marks[k - 1].kind in CLOSERS):
+        """Yield where one atom ends that begins at token k."""
+        if "^" in atom.names and (k == 0 or self.tokens[k - 1].kind in CLOSERS):
             yield k
-        if "$" in atom.names and (k >= len(self.marks) or self.marks[k].kind in CLOSERS):
+        if "$" in atom.names and (k >= len(self.tokens) or self.tokens[k].kind in CLOSERS):
             yield k
-        if k >= len(self.marks):
+        if k >= len(self.tokens):
             return
         if atom.names & self.names[k]:
             yield k + 1
-        if atom.slot in PHRASES and (end := phrase(self.marks, k)):
+        if atom.slot in PHRASES and (end := phrase(self.tokens, k)):
             if not atom.types or self._type(k, end) in atom.types:
                 yield end
         elif atom.slot in LISTS:
-            yield from reversed(list_ends(self.marks, k, self.names)[atom.slot == "L" :])
+            yield from reversed(list_ends(self.tokens, k, self.names)[atom.slot == "L" :])
 
     def _type(self, k: int, end: int) -> str:
         """Return the type of the room that a phrase names."""
-        head = next(m for m in self.marks[k:end] if m.kind in HEADS)
+        head = next(m for m in self.tokens[k:end] if m.kind in HEADS)
         return "bedroom" if head.kind == "suite" else head.value.partition("/")[0]
 
 
-def phrase(marks: Sequence[Mark], k: int) -> int:
-    """Return where the noun phrase ends that begins at mark k; 0 where none does."""
-    while k < len(marks) and (marks[k].kind in LEADING or (marks[k].kind == "amount" and marks[k].value == "area")):
+def phrase(tokens: Sequence[Token], k: int) -> int:
+    """Return where the noun phrase ends that begins at token k; 0 where none does."""
+    while k < len(tokens) and (tokens[k].kind in LEADING or (tokens[k].kind == "amount" and tokens[k].value == "area")):
         k += 1
-    if k >= len(marks) or marks[k].kind not in HEADS:
+    if k >= len(tokens) or tokens[k].kind not in HEADS:
         return 0
     k += 1
-    while k < len(marks) and (
-        marks[k].kind in {"post", "clf"} or (marks[k].kind, marks[k].value) in {("num", "figure"), ("amount", "area"), ("det", "own")}
+    while k < len(tokens) and (
+        tokens[k].kind in {"post", "clf"} or (tokens[k].kind, tokens[k].value) in {("num", "figure"), ("amount", "area"), ("det", "own")}
     ):
         k += 1
     return k
 
 
-def list_ends(marks: Sequence[Mark], k: int, names: Sequence[frozenset[str]]) -> list[int]:
-    """Return the ends of the lists of one, two, three ... noun phrases that begin at mark k."""
+def list_ends(tokens: Sequence[Token], k: int, names: Sequence[frozenset[str]]) -> list[int]:
+    """Return the ends of the lists of one, two, three ... noun phrases that begin at token k."""
     ends: list[int] = []
-    while end := phrase(marks, k):
+    while end := phrase(tokens, k):
         ends.append(end)
         k = end
-        while k < len(marks) and k - end < 4 and (marks[k].kind in SEPARATORS or (k > end and names[k] & TOWARDS and not phrase(marks, k))):
+        while (
+            k < len(tokens) and k - end < 4 and (tokens[k].kind in SEPARATORS or (k > end and names[k] & TOWARDS and not phrase(tokens, k)))
+        ):
             k += 1
         if k == end:
             break
     return ends
 
 
-def _read(frame: Frame, marks: Sequence[Mark], start: int, end: int, slots: Slots) -> Iterator[Mark]:
-    """Yield the reading of a frame that fits marks[start:end]."""
+def _read(frame: Frame, tokens: Sequence[Token], start: int, end: int, slots: Slots) -> Iterator[Token]:
+    """Yield the reading of a frame that fits tokens[start:end]."""
     inside = {i for first, last in slots.values() for i in range(first, last)}
-    words = [marks[i] for i in range(start, end) if i not in inside] or list(marks[start:end])
+    words = [tokens[i] for i in range(start, end) if i not in inside] or list(tokens[start:end])
     first, last = words[0].first, words[-1].last
     for atom in frame.reading:
         slot, _, change = atom.partition(">")
         if slot in slots:
             a, b = slots[slot]
-            kept = list(_items(marks[a:b])) if slot in LISTS else marks[a:b]
-            other = marks[slots[change[1:]][0]] if change[:1] in {"@", "="} else None
+            kept = list(_items(tokens[a:b])) if slot in LISTS else tokens[a:b]
+            other = tokens[slots[change[1:]][0]] if change[:1] in {"@", "="} else None
             if other is None:
-                yield from (_change_mark(m, change) for m in kept)
+                yield from (_change_token(m, change) for m in kept)
             else:
                 said = {"number": other.number} if change[0] == "=" else {"value": f"bedroom/{other.value}"}
                 yield from (replace(m, **said) for m in kept)
@@ -226,43 +229,43 @@ def _read(frame: Frame, marks: Sequence[Mark], start: int, end: int, slots: Slot
             what, _, text = atom.partition(":")
             what, _, number = what.partition("=")
             kind, _, value = what.partition("/")
-            plain = " ".join(m.text for m in marks[start:end]) if kind == "pron" else value or kind  # "the other two" keeps its number
-            yield Mark(kind, value, float(number or 0.0), False, first, last, text.replace("_", " ") or plain)
+            plain = " ".join(m.text for m in tokens[start:end]) if kind == "pron" else value or kind  # "the other two" keeps its number
+            yield Token(kind, value, float(number or 0.0), False, first, last, text.replace("_", " ") or plain)
 
 
-def _items(marks: Sequence[Mark]) -> Iterator[Mark]:
+def _items(tokens: Sequence[Token]) -> Iterator[Token]:
     """Yield the phrases of a list and what parts them; "to" in front of each goes."""
     k = 0
-    while k < len(marks):
-        end = phrase(marks, k)
+    while k < len(tokens):
+        end = phrase(tokens, k)
         if end:
-            yield from marks[k:end]
-        elif marks[k].kind in SEPARATORS and marks[k].value != "to":
-            yield marks[k]
+            yield from tokens[k:end]
+        elif tokens[k].kind in SEPARATORS and tokens[k].value != "to":
+            yield tokens[k]
         k = end or k + 1
 
 
-def _change_mark(mark: Mark, change: str) -> Mark:
-    """Return a mark read as something else."""
-    if change == "flip":
-        return replace(mark, bound="most" if mark.bound == "least" else "least")
-    if change == "total":
-        return replace(mark, total=True)
+def _change_token(token: Token, change: str) -> Token:
+    """Return a token read as something else."""
     if change == "bedroom":
-        return replace(mark, kind="room", value=f"bedroom/{mark.value}", number=0.0, text=f"bedroom_{mark.text}")
-    if change == "room":
-        return replace(mark, kind="room")
+        return replace(token, kind="room", value=f"bedroom/{token.value}", number=0.0, text=f"bedroom_{token.text}")
     kind, _, value = change.partition("/")
-    number = float(int(max(mark.number, 1.0))) if kind == "num" else mark.number
-    return replace(mark, kind=kind, value=value, number=number) if change else mark
+    number = float(int(max(token.number, 1.0))) if kind == "num" else token.number
+    said: dict[str, Any] = {
+        "flip": {"bound": "most" if token.bound == "least" else "least"},
+        "less": {"number": token.number - 1},
+        "total": {"total": True},
+        "room": {"kind": "room"},
+    }
+    return replace(token, **said.get(change, {"kind": kind, "value": value, "number": number})) if change else token
 
 
 # word order: relations in two parts
 
 
-def join_brackets(marks: Sequence[Mark], words: Words) -> list[Mark]:
+def join_brackets(tokens: Sequence[Token], words: Words) -> list[Token]:
     """Make one relation of its two parts: "an ... grenzt" stands where "an" stood."""
-    reordered, lex = list(marks), words.lexicon
+    reordered, lex = list(tokens), words.lexicon
     k = 0
     while k < len(reordered) if lex.frames else False:
         bracket = _bracket(reordered, k, lex)
@@ -278,46 +281,48 @@ def join_brackets(marks: Sequence[Mark], words: Words) -> list[Mark]:
     return reordered
 
 
-def _bracket(marks: list[Mark], k: int, lex: Lexicon) -> tuple[str, int, int, int] | None:
-    """Return (relation, end of its first part, place and end of the second) of a bracket that begins at mark k."""
-    for first, second, cue in lex.frames.get(_bare(marks[k].text, lex)[0], ()):
-        start = _matches(marks, k, first, lex)
+def _bracket(tokens: list[Token], k: int, lex: Lexicon) -> tuple[str, int, int, int] | None:
+    """Return (relation, end of its first part, place and end of the second) of a bracket that begins at token k."""
+    for first, second, cue in lex.frames.get(_bare(tokens[k].text, lex)[0], ()):
+        start = _matches(tokens, k, first, lex)
         named = False
-        for j in range(start, min(len(marks), start + FARTHEST)) if start is not None else ():
-            mark, end = marks[j], _matches(marks, j, second, lex)
-            comma = mark.kind == "comma" and cue.startswith("thru")
-            other = mark.kind == "cue" and mark.value not in {"has", "in", "door"} and end is None
-            again = named and end is None and cue == "open" and _matches(marks, j, first, lex) is not None
-            if (mark.kind in BREAKS and not comma) or other or again:
+        for j in range(start, min(len(tokens), start + FARTHEST)) if start is not None else ():
+            token, end = tokens[j], _matches(tokens, j, second, lex)
+            comma = token.kind == "comma" and cue.startswith("thru")
+            other = token.kind == "cue" and token.value not in {"has", "in", "door"} and end is None
+            again = named and end is None and cue == "open" and _matches(tokens, j, first, lex) is not None
+            if (token.kind in BREAKS and not comma) or other or again:
                 break
-            if named and end is not None and not _goes_on(marks, end, second, lex):
+            if named and end is not None and not _goes_on(tokens, end, second, lex):
                 return cue, start or 0, j, end
-            named = named or mark.kind in {*HEADS, "pron", "every", "zone"}
+            named = named or token.kind in {*HEADS, "pron", "every", "zone"}
     return None
 
 
-def _goes_on(marks: list[Mark], end: int, second: tuple[str, ...], lex: Lexicon) -> bool:
+def _goes_on(tokens: list[Token], end: int, second: tuple[str, ...], lex: Lexicon) -> bool:
     """Whether the second part has an object of its own: "ins Bad geht man über den Flur", "卫生间和洗衣房都不能挨着餐厅"."""
     if set(second) <= lex.sign("way_through"):
-        return end < len(marks) and marks[end].kind not in BREAKS | {"join"}
-    return end < len(marks) and "characters" in lex.traits and marks[end - 1].kind == "cue" and marks[end].kind in HEADS | {"num", "zone"}
+        return end < len(tokens) and tokens[end].kind not in BREAKS | {"join"}
+    return (
+        end < len(tokens) and "characters" in lex.traits and tokens[end - 1].kind == "cue" and tokens[end].kind in HEADS | {"num", "zone"}
+    )
 
 
-def _matches(marks: list[Mark], k: int, wanted: tuple[str, ...], lex: Lexicon) -> int | None:
-    """Return where the marks go on after the words wanted, where they stand at k; adverbs between them are skipped."""
+def _matches(tokens: list[Token], k: int, wanted: tuple[str, ...], lex: Lexicon) -> int | None:
+    """Return where the tokens go on after the words wanted, where they stand at k; adverbs between them are skipped."""
     need = list(wanted)
-    while need and k < len(marks):
-        have = _bare(marks[k].text, lex)
+    while need and k < len(tokens):
+        have = _bare(tokens[k].text, lex)
         if have == need[: len(have)]:
             need = need[len(have) :]
         elif have[: len(need)] == need and set(have[len(need) :]) <= lex.sign("article"):  # "in die Küche übergeht"
             need = []
-        elif len(need) == len(wanted) or marks[k].kind not in {"adverb", "flag", "comma"}:
+        elif len(need) == len(wanted) or tokens[k].kind not in {"adverb", "flag", "comma"}:
             return None
         k += 1
     return None if need else k
 
 
 def _bare(text: str, lex: Lexicon) -> list[str]:
-    """Return the words of a mark, prepositions without the article in them."""
+    """Return the words of a token, prepositions without the article in them."""
     return [lex.compounds.melted.get(w, w) for w in text.split() or [""]]

@@ -14,9 +14,9 @@ from typing import Literal
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.lexicon import STRONG
 from pipeline.floorplan.language.lexicon import lexicon as spoken
-from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.text import fold, has_minus, tokenize, words
+from pipeline.floorplan.language.text import fold, has_minus, split_words, words
+from pipeline.floorplan.language.tokens import read_words, segment
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence
 from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
@@ -110,19 +110,19 @@ class Scan:
             self.language = detect(prompt)
         except RefusedError:
             self.language = ""
-        heard = listen(prompt, self.language) if self.language else None
-        self.traits = heard.lexicon.traits if heard is not None else frozenset[str]()
-        tokens, marks = (heard.tokens, segment(heard)) if heard is not None else (tokenize(prompt), [])
-        written = [fold(t.text) for t in tokens]
-        texts = [w if stem(w) in _stems() else read for w, read in zip(written, heard.texts if heard is not None else written, strict=True)]
-        self.words = [_Word(text, stem(text), t.start, t.end) for t, text in zip(tokens, texts, strict=True) if text != "-"]
+        read = read_words(prompt, self.language) if self.language else None
+        self.traits = read.lexicon.traits if read is not None else frozenset[str]()
+        written, tokens = (read.written, segment(read)) if read is not None else (split_words(prompt), [])
+        folded = [fold(w.text) for w in written]
+        texts = [w if stem(w) in _stems() else text for w, text in zip(folded, read.texts if read is not None else folded, strict=True)]
+        self.words = [_Word(text, stem(text), t.start, t.end) for t, text in zip(written, texts, strict=True) if text != "-"]
         # names of rooms: whether a word is the first of one
-        self.rooms = {tokens[k].start: k == m.first for m in marks if m.kind in STRONG for k in range(m.first, m.last)}
-        self.numbers = {t.start: (t.end, min(t.number, MOST)) for t in tokens if t.number is not None}
-        alone = ((w, heard.lexicon.trie.get(w.text, {}).get("")) for w in self.words) if heard is not None else ()  # "for two desks"
+        self.rooms = {written[k].start: k == m.first for m in tokens if m.kind in STRONG for k in range(m.first, m.last)}
+        self.numbers = {t.start: (t.end, min(t.number, MOST)) for t in written if t.number is not None}
+        alone = ((w, read.lexicon.trie.get(w.text, {}).get("")) for w in self.words) if read is not None else ()  # "for two desks"
         self.numbers |= {w.start: (w.end, min(m.number, MOST)) for w, m in alone if m is not None and m.kind == "num"}
-        self.numbers |= {tokens[m.first].start: (tokens[m.last - 1].end, min(m.number, MOST)) for m in marks if m.kind == "num"}
-        self.counted = {tokens[m.first].start for m in marks if (m.kind, m.value) == ("unit", "rooms")}  # "trois pièces" are rooms
+        self.numbers |= {written[m.first].start: (written[m.last - 1].end, min(m.number, MOST)) for m in tokens if m.kind == "num"}
+        self.counted = {written[m.first].start for m in tokens if (m.kind, m.value) == ("unit", "rooms")}  # "trois pièces" are rooms
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
         self.there = [
             [

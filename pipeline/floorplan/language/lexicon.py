@@ -35,11 +35,11 @@ def _classes() -> Mapping[str, frozenset[str]]:
 
 
 def kinds(name: str) -> frozenset[str]:
-    """Return a class of kinds of marks, or of types of rooms."""
+    """Return a class of kinds of tokens, or of types of rooms."""
     return _classes()[name]
 
 
-SECTIONS = {  # section of a file -> kind of mark, the sections that win first
+SECTIONS = {  # section of a file -> kind of token, the sections that win first
     "ignored": "ignored", "corrections": "fix", "enough": "enough", "wings": "wing", "zones": "zone", "activities": "activity", "rooms": "room",
     "suites": "suite", "homes": "home", "flags": "flag", "owners": "owner", "entrances": "enter", "outside": "outside", "needless": "needless",
     "negators": "neg", "pronouns": "pron", "everything": "every", "levels": "level", "comparisons": "cmp", "factors": "factor", "passages": "via",

@@ -1,4 +1,4 @@
-"""Prompt → FloorProgram, without network and always the same: characters → marks → phrases → rooms and facts → program; then the rooms that wishes for furniture are for."""
+"""Prompt → FloorProgram, without network and always the same: characters → tokens → phrases → rooms and facts → program; then the rooms that wishes for furniture are for."""
 
 import bisect
 import itertools
@@ -14,12 +14,12 @@ from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.frames import apply_frames, join_brackets
 from pipeline.floorplan.language.furnishing import STOPS, Claim, Scan, read_furniture
 from pipeline.floorplan.language.lexicon import kinds
-from pipeline.floorplan.language.marks import Mark, amounts, listen, segment
 from pipeline.floorplan.language.phrases import ban, refuse, sentences, settle
 from pipeline.floorplan.language.rooms import Reading, introduce
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.text import tokenize
+from pipeline.floorplan.language.text import split_words
+from pipeline.floorplan.language.tokens import Token, amounts, read_words, segment
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, Furniture, Span, Things
@@ -29,6 +29,7 @@ LONGEST = 20_000  # characters
 MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
 LONGEST_LIST = 400  # characters of a list of wishes
 FARTHEST = 24  # characters between a wish and the room that follows it
+LARGE = 8  # a number from here on is a size or a count, and missed where nothing took it
 CLOSE = 4  # the same where nothing but a particle stands between
 EMPTY = kinds("empty")
 READ = {"used"}  # what was read with its neighbours
@@ -57,16 +58,16 @@ def understand(prompt: str) -> FloorProgram:
 
 def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> FloorProgram:
     """Return what a prompt says of rooms, and no more; `plain` is it without its wishes for furniture, all else in its place."""
-    words = replace(listen(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
-    starts = [t.start for t in words.tokens]  # a mark where a wish was taken out: whose it is tells which rooms there are
+    words = replace(read_words(plain, detect(prompt)), prompt=prompt)  # words are cited as they were written
+    starts = [t.start for t in words.written]  # a token where a wish was taken out: whose it is tells which rooms there are
     places = [bisect.bisect_left(starts, w.start) for w in wishes]
-    gaps = [Mark("wish", first=k, last=k) for k in places]
-    marks = sorted([*gaps, *amounts(segment(words), words)], key=lambda m: m.first)
-    said = [m for m in apply_frames(marks, words) if m.kind != "wish"]
+    gaps = [Token("wish", first=k, last=k) for k in places]
+    tokens = sorted([*gaps, *amounts(segment(words), words)], key=lambda m: m.first)
+    said = [m for m in apply_frames(tokens, words) if m.kind != "wish"]
     refuse(said, words)
     people = [m for m in said if m.kind == "people"]
-    marks = join_brackets([m for m in said if m.kind != "people"], words)
-    parsed = sentences(marks, words)
+    tokens = join_brackets([m for m in said if m.kind != "people"], words)
+    parsed = sentences(tokens, words)
     everything = [e for s in parsed for e in s]
     if not any(e.kind in {"np", "home"} or (e.kind, e.value) == ("amount", "rooms") for e in everything):
         shown = re.sub(r"\s+", " ", prompt.strip())[:60]
@@ -85,7 +86,7 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
         fault = error.errors()[0]
         where = ".".join(map(str, fault["loc"]))
         raise RefusedError(f"{where} cannot be {str(fault['input'])[:60]}: {fault['msg']}", "ask for a home of usual size") from error
-    return program.model_copy(update=_left_out(state, parsed, program.evidence, sorted([*marks, *people[1:]], key=lambda m: m.first)))
+    return program.model_copy(update=_left_out(state, parsed, program.evidence, sorted([*tokens, *people[1:]], key=lambda m: m.first)))
 
 
 def check_length(prompt: str) -> None:
@@ -94,29 +95,31 @@ def check_length(prompt: str) -> None:
         raise UsageError("the prompt is empty", 'say what you want, e.g. "a two-bedroom flat with an open kitchen"')
     if len(prompt) > LONGEST:
         raise UsageError(f"the prompt is {len(prompt)} characters long", f"keep it under {LONGEST}")
-    if (count := len(tokenize(prompt))) > MOST_WORDS:
-        raise UsageError(f"the prompt has {count} words and marks", f"keep it under {MOST_WORDS}")
+    if (count := len(split_words(prompt))) > MOST_WORDS:
+        raise UsageError(f"the prompt has {count} words and tokens", f"keep it under {MOST_WORDS}")
 
 
-def _left_out(state: Reading, parsed: list[list[Mark]], evidence: Sequence[Evidence], marks: Sequence[Mark]) -> dict[str, tuple[Span, ...]]:
+def _left_out(
+    state: Reading, parsed: list[list[Token]], evidence: Sequence[Evidence], tokens: Sequence[Token]
+) -> dict[str, tuple[Span, ...]]:
     """Return what nothing was made of: `unbuilt`, names of what nobody builds; `unparsed`, words that are in no vocabulary, and words that say something and stand in no evidence."""
-    tokens = state.heard.tokens
-    places = [{k for k, t in enumerate(tokens) if e.start <= t.start and t.end <= e.end} for e in evidence]
-    cited = _consumed_tokens(state, parsed, places, evidence)
+    written = state.words.written
+    places = [{k for k, t in enumerate(written) if e.start <= t.start and t.end <= e.end} for e in evidence]
+    cited = _consumed_words(state, parsed, places, evidence)
     spans: dict[str, list[Span]] = {"unparsed": [], "unbuilt": []}
-    for k, mark in enumerate(marks):
-        if mark.last == mark.first:
+    for k, token in enumerate(tokens):
+        if token.last == token.first:
             continue
-        free = not cited & set(range(mark.first, mark.last))
-        named = free and mark.value in NOT_BUILT
-        if named or mark.kind == "word" or (free and _says(state, marks, k)):
-            start, end = tokens[mark.first].start, tokens[mark.last - 1].end
-            spans["unbuilt" if named else "unparsed"].append(Span(start=start, end=end, text=state.heard.prompt[start:end]))
+        free = not cited & set(range(token.first, token.last))
+        named = free and token.value in NOT_BUILT
+        if named or token.kind == "word" or (free and _says(state, tokens, k)):
+            start, end = written[token.first].start, written[token.last - 1].end
+            spans["unbuilt" if named else "unparsed"].append(Span(start=start, end=end, text=state.words.prompt[start:end]))
     return {field: tuple(some) for field, some in spans.items()}
 
 
-def _consumed_tokens(state: Reading, parsed: list[list[Mark]], places: Sequence[set[int]], evidence: Sequence[Evidence]) -> set[int]:
-    """Return the tokens that something was made of: evidence, what belongs to a phrase in it, and words that only help a statement."""
+def _consumed_words(state: Reading, parsed: list[list[Token]], places: Sequence[set[int]], evidence: Sequence[Evidence]) -> set[int]:
+    """Return the words that something was made of: evidence, what belongs to a phrase in it, and words that only help a statement."""
     cited = state.used.union(*places)
     stated = set().union(*(p for p, e in zip(places, evidence, strict=True) if e.field.split(".")[0] != "rooms" or e.field.count(".") > 1))
     roles = {r.role for r in state.inventory.rooms}
@@ -142,23 +145,26 @@ def _consumed_tokens(state: Reading, parsed: list[list[Mark]], places: Sequence[
     return cited
 
 
-def _says(state: Reading, marks: Sequence[Mark], k: int) -> bool:
-    """Whether the mark at k says something by itself."""
-    mark = marks[k]
-    if mark.kind in EMPTY or (mark.kind == "det" and mark.value not in POINTING):
-        return k > 0 and (mark.kind, mark.value, marks[k - 1].kind) == ("join", "to", "join")  # "and to a study": something leads there
-    if mark.kind == "cue":
-        return mark.value not in {"has", "in"} and mark.text not in state.heard.lexicon.sign("quiet")
-    dweller = mark.kind == "owner" and any(m.text in state.heard.lexicon.sign("towards") for m in marks[max(0, k - 2) : k])
-    if dweller or (mark.kind, mark.value) in {("pron", "it"), ("pron", "one")}:
+def _says(state: Reading, tokens: Sequence[Token], k: int) -> bool:
+    """Whether the token at k says something by itself."""
+    token = tokens[k]
+    if token.kind in EMPTY or (token.kind == "det" and token.value not in POINTING):
+        return k > 0 and (token.kind, token.value, tokens[k - 1].kind) == ("join", "to", "join")  # "and to a study": something leads there
+    if token.kind == "cue":
+        return token.value not in {"has", "in"} and token.text not in state.words.lexicon.sign("quiet")
+    dweller = token.kind == "owner" and any(m.text in state.words.lexicon.sign("towards") for m in tokens[max(0, k - 2) : k])
+    if dweller or (token.kind, token.value) in {("pron", "it"), ("pron", "one")}:
         return False  # "for my granny: ..." says who lives there
-    if (mark.kind, mark.value) in {("adj", "closed"), ("adj", "plain")} or (k and mark.kind == "size" and marks[k - 1].kind == "amount"):
+    if (token.kind, token.value) in {("adj", "closed"), ("adj", "plain")} or (
+        k and token.kind == "size" and tokens[k - 1].kind == "amount"
+    ):
         return False  # what is not open is apart anyway; "20 m² groß"
-    ahead = marks[k + 1] if k + 1 < len(marks) else None
-    head = next((m for m in marks[k + 1 :] if m.kind not in LEADING | {"owner", "word"}), None)
-    if mark.kind in LEADING and head is not None and head.kind == "home":
+    ahead = tokens[k + 1] if k + 1 < len(tokens) else None
+    head = next((m for m in tokens[k + 1 :] if m.kind not in LEADING | {"owner", "word"}), None)
+    if token.kind in LEADING and head is not None and head.kind == "home":
         return False  # "a shared student flat"
-    return not (mark.kind == "num" and ahead is not None and ahead.kind in {"owner", "fill", "word", "verb"})  # "three generations"
+    few = token.kind == "num" and token.number < LARGE  # "three generations"
+    return not (few and ahead is not None and ahead.kind in {"owner", "fill", "word", "verb"})
 
 
 # the rooms that wishes for furniture are for
@@ -296,7 +302,7 @@ class _Place:
         return bool(self.scan.length(lead, "dwelling") or self.scan.length(self._at(room.end), "dwelling"))
 
     def _led(self, room: Mention, claim: Claim) -> bool:
-        """Whether a word or a mark between a room and a wish gives the one to the other: "with", "has", a colon."""
+        """Whether a word or a token between a room and a wish gives the one to the other: "with", "has", a colon."""
         between = range(self._at(room.end), self._at(claim.start))
         inside = {k for c in self.claims for k in range(self._at(c.start), self._at(c.end))}  # "no bath": it leads to no other wish
         marked = any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in between if k not in inside)

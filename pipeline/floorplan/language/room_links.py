@@ -5,8 +5,8 @@ import itertools
 from collections.abc import Iterable, Sequence
 from typing import Any, NoReturn
 
-from pipeline.floorplan.language.marks import Words
 from pipeline.floorplan.language.rooms import HALLS, Fact, Group, Inventory, Reading
+from pipeline.floorplan.language.tokens import Words
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import Evidence
 
@@ -31,7 +31,7 @@ class Draft:
         self.fields: dict[str, Any] = {}
 
     def cite(self, first: int, last: int, field: str) -> None:
-        """Note that `field` was read from tokens[first:last]."""
+        """Note that `field` was read from words[first:last]."""
         entry = self.words.quote(first, last, field)
         if entry not in self.evidence[-40:]:
             self.evidence.append(entry)
@@ -41,7 +41,7 @@ class Draft:
         return [e for e in self.evidence if e.field.startswith(prefix)]
 
     def refuse(self, what: str, advice: str, spans: Iterable[tuple[int, int] | None], field: str = "rooms") -> NoReturn:
-        """Refuse a prompt, with the words tokens[first:last] that cannot be met."""
+        """Refuse a prompt, with the words words[first:last] that cannot be met."""
         places = {self.words.quote(first, last, field) for first, last in filter(None, spans)}
         raise ImpossibleError(what, advice, sorted(places, key=lambda e: (e.start, e.end)))
 
@@ -109,7 +109,6 @@ def join(draft: Draft, state: Reading) -> None:
 
 def _give(draft: Draft, stock: Inventory, thing: str, owner: str, fact: Fact) -> None:
     draft.link(owner, thing, "door", fact)
-    stock.belongings.add(thing)
     if stock.get(thing).type in {"bathroom", "wc"} and stock.get(owner).type != "hallway":
         draft.relate("degree", thing, None, 1.0, fact)
         if stock.get(owner).type == "bedroom":

@@ -4,8 +4,8 @@ import itertools
 from dataclasses import dataclass, field
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.marks import Mark, Words
 from pipeline.floorplan.language.phrases import ROLES, backward, heads
+from pipeline.floorplan.language.tokens import Token, Words
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.floor_program import MAX_ROOMS
 
@@ -35,7 +35,7 @@ class Named:
     extra: bool = False  # "another bathroom": none of those named in front
     index: int = 0
     stated: bool = True
-    span: tuple[int, int] | None = None  # the words that named it first, as tokens
+    span: tuple[int, int] | None = None  # the words that named it first
     level: int | None = None
     low: float | None = None
     high: float | None = None
@@ -82,7 +82,7 @@ Group = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """Something said: `what` about rooms `a` (and `b`), read from tokens[first:last]."""
+    """Something said: `what` about rooms `a` (and `b`), read from words[first:last]."""
 
     what: str
     a: Group
@@ -96,34 +96,34 @@ class Fact:
 class Reading:
     """State while reading."""
 
-    heard: Words
+    words: Words
     inventory: Inventory = field(default_factory=Inventory)
     facts: list[Fact] = field(default_factory=list)
-    banned: list[tuple[str, Mark]] = field(default_factory=list)
-    amounts: list[tuple[Mark, Group | None]] = field(default_factory=list)  # None: the whole home
-    flags: dict[str, Mark] = field(default_factory=dict)
-    looks: list[Mark] = field(default_factory=list)
-    levels: list[Mark] = field(default_factory=list)  # words for storeys
-    zones: dict[str, tuple[Group, Mark]] = field(default_factory=dict)
+    banned: list[tuple[str, Token]] = field(default_factory=list)
+    amounts: list[tuple[Token, Group | None]] = field(default_factory=list)  # None: the whole home
+    flags: dict[str, Token] = field(default_factory=dict)
+    looks: list[Token] = field(default_factory=list)
+    levels: list[Token] = field(default_factory=list)  # words for storeys
+    zones: dict[str, tuple[Group, Token]] = field(default_factory=dict)
     wings: tuple[str, ...] = ()  # zones that lie in parts of their own
     heights: dict[str, int] = field(default_factory=dict)  # the storey of zones, and of all other rooms ("*")
-    entrance: tuple[str, Mark] | None = None
-    outside: tuple[str, Mark] | None = None  # the owner of a door of its own
-    homes: list[Mark] = field(default_factory=list)
-    studio: Mark | None = None
-    storeys: tuple[int, Mark] | None = None
-    rooms: tuple[int, Mark] | None = None  # "a three-room flat"
-    people: Mark | None = None  # how many live there
+    entrance: tuple[str, Token] | None = None
+    outside: tuple[str, Token] | None = None  # the owner of a door of its own
+    homes: list[Token] = field(default_factory=list)
+    studio: Token | None = None
+    storeys: tuple[int, Token] | None = None
+    rooms: tuple[int, Token] | None = None  # "a three-room flat"
+    people: Token | None = None  # how many live there
     parted: str = ""  # of which type of room one was spoken of apart
     topic: Group = ()  # what the last sentence was about
     past: list[Group] = field(default_factory=list)  # groups named in earlier sentences, the latest last
     used: set[int] = field(default_factory=set)
 
     def understood(self, first: int, last: int) -> None:
-        """Mark words as understood."""
+        """Token words as understood."""
         self.used.update(range(first, last))
 
-    def say(self, what: str, a: Group, b: Group, element: Mark, value: float = 0.0) -> None:
+    def say(self, what: str, a: Group, b: Group, element: Token, value: float = 0.0) -> None:
         """Record a fact. Whole groups ("*...") mean something to few kinds of fact only."""
         if what not in GROUPS:
             a, b = (tuple(i for i in g if not i.startswith("*")) for g in (a, b))
@@ -134,11 +134,11 @@ class Reading:
             self.facts.append(Fact(what, tuple(dict.fromkeys(a)), tuple(dict.fromkeys(b)), value, element.first, element.last))
 
 
-def _many(e: Mark) -> bool:
+def _many(e: Token) -> bool:
     return e.plural or bool(e.det & {"all", "both", "each"}) or e.number > 1
 
 
-def _word(e: Mark) -> str:
+def _word(e: Token) -> str:
     return e.text.rsplit(maxsplit=1)[-1]
 
 
@@ -151,13 +151,13 @@ def close(room: Named, role: str, surface: str, level: int | None = None) -> Nam
     return room
 
 
-def _is_spelt_out(sentence: list[Mark], k: int, room: Named) -> bool:
+def _is_spelt_out(sentence: list[Token], k: int, room: Named) -> bool:
     """Whether a phrase spells out a count in front of a colon or a bracket: "three bedrooms: a master, two for the kids"."""
     j = next((j for j in range(k - 1, -1, -1) if sentence[j].kind in {"colon", "open"}), 0)
     return any(room.id in x.ids and len(x.ids) > 1 for x in sentence[:j])
 
 
-def _before(sentence: list[Mark], k: int, *breaks: str) -> Mark | None:
+def _before(sentence: list[Token], k: int, *breaks: str) -> Token | None:
     """Return the phrase of the same type in front of k, with none of the kinds that break a list between."""
     for e in reversed(sentence[:k]):
         if e.kind in breaks:
@@ -167,7 +167,7 @@ def _before(sentence: list[Mark], k: int, *breaks: str) -> Mark | None:
     return None
 
 
-def _is_listed_again(sentence: list[Mark], k: int) -> bool:
+def _is_listed_again(sentence: list[Token], k: int) -> bool:
     """Whether a bare noun is the next item of a list that has it already: "bedroom 12 m2, bedroom 10 m2" are two."""
     first, here = _before(sentence, k, "cue", "colon", "verb"), sentence[k]
     items = [here] if first is None else [first, here]
@@ -176,7 +176,7 @@ def _is_listed_again(sentence: list[Mark], k: int) -> bool:
     return first is not None and bare and ends and here.type not in ALONE and sentence[k - 1].kind in {"comma", "join"}
 
 
-def name(state: Reading, sentence: list[Mark], k: int, level: int | None) -> Group:
+def name(state: Reading, sentence: list[Token], k: int, level: int | None) -> Group:
     """Return the ids of the rooms that the phrase k names; make those that are missing."""
     e, stock = sentence[k], state.inventory
     e.ids = e.ids or tuple(r.id for r in _resolve_phrase(state, sentence, k, level))
@@ -187,7 +187,7 @@ def name(state: Reading, sentence: list[Mark], k: int, level: int | None) -> Gro
     return e.ids
 
 
-def _resolve_phrase(state: Reading, sentence: list[Mark], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
+def _resolve_phrase(state: Reading, sentence: list[Token], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
     e, stock, role = sentence[k], state.inventory, sentence[k].role
     same = stock.of(e.type)
     suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), ()) if e.type == "bedroom" and not role else ()
@@ -215,17 +215,17 @@ def _resolve_phrase(state: Reading, sentence: list[Mark], k: int, level: int | N
     return rooms or _new(state, e, int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1)), role, level)
 
 
-def _new(state: Reading, e: Mark, count: int, role: str, level: int | None) -> list[Named]:
+def _new(state: Reading, e: Token, count: int, role: str, level: int | None) -> list[Named]:
     return [state.inventory.add(e.type, role, e.text, level, open_slot=count > 1) for _ in range(count)]
 
 
-def _fill(state: Reading, e: Mark, count: int) -> None:
+def _fill(state: Reading, e: Token, count: int) -> None:
     """Add rooms of a phrase's type that nothing is said of yet until there are so many."""
     while len(state.inventory.of(e.type)) < count:
         state.inventory.add(e.type, "", e.text, None, open_slot=True)
 
 
-def _others(state: Reading, sentence: list[Mark], k: int, role: str, level: int | None) -> list[Named]:
+def _others(state: Reading, sentence: list[Token], k: int, role: str, level: int | None) -> list[Named]:
     """Return "the other two bedrooms": those that nothing was said of, new ones where they are too few."""
     e, same = sentence[k], state.inventory.of(sentence[k].type)
     mentioned = {i for g in state.past[-1:] for i in g} | {i for x in sentence[:k] for i in x.ids} | set(state.topic)
@@ -235,7 +235,7 @@ def _others(state: Reading, sentence: list[Mark], k: int, role: str, level: int 
     return (rest if _many(e) else [close(r, "", e.text) for r in rest[:1]]) or _new(state, e, 1, role, level)
 
 
-def _ordinal(state: Reading, e: Mark, role: str, level: int | None) -> list[Named]:
+def _ordinal(state: Reading, e: Token, role: str, level: int | None) -> list[Named]:
     same = state.inventory.of(e.type)
     if len(same) >= e.ordinal:
         rest = same if e.ordinal == 1 else [r for r in same if r.role != "primary"]
@@ -245,17 +245,17 @@ def _ordinal(state: Reading, e: Mark, role: str, level: int | None) -> list[Name
     return _new(state, e, 1, role, level)
 
 
-def _within(state: Reading, e: Mark, count: float) -> None:
+def _within(state: Reading, e: Token, count: float) -> None:
     """Refuse more rooms of a type than a whole count allows: "a two-bedroom flat ... the third bedroom"."""
     same = state.inventory.of(e.type)
     if count > MAX_ROOMS or (count > len(same) and any(r.whole for r in same)):
-        words = dict.fromkeys(state.heard.quote(*r.span, "rooms") for r in same if r.span is not None)
+        words = dict.fromkeys(state.words.quote(*r.span, "rooms") for r in same if r.span is not None)
         what = f"{count:g} {e.type.replace('_', ' ')}s are asked for" + (f", and {len(same)} besides" if same else "")
         advice = "keep one of the two counts" if same else f"ask for {MAX_ROOMS} at most"
-        raise ImpossibleError(what, advice, [*words, state.heard.quote(max(e.first - 1, 0), e.last, "rooms")])
+        raise ImpossibleError(what, advice, [*words, state.words.quote(max(e.first - 1, 0), e.last, "rooms")])
 
 
-def _by_role(state: Reading, sentence: list[Mark], k: int, role: str, level: int | None) -> list[Named]:
+def _by_role(state: Reading, sentence: list[Token], k: int, role: str, level: int | None) -> list[Named]:
     """Return the rooms of a role; one that was only counted may take it."""
     e, same, many = sentence[k], state.inventory.of(sentence[k].type), _many(sentence[k])
     rooms = [r for r in same if r.role == role]
@@ -263,7 +263,7 @@ def _by_role(state: Reading, sentence: list[Mark], k: int, role: str, level: int
         return rooms if many else rooms[:1]
     plain = [r for r in same if not r.role and r.id not in state.inventory.belongings and not _later(r, e.first)]
     if e.type == "bathroom":
-        bare = "bare_nouns" in state.heard.lexicon.traits and not e.det and not e.number
+        bare = "bare_nouns" in state.words.lexicon.traits and not e.det and not e.number
         slots = [r for r in same if r.open_slot] or (plain if len(plain) == 1 and (e.definite or bare) else [])
         return [close(slots[0], role, e.text)] if slots and role not in {"ensuite", "primary"} else []
     listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")  # "two bedrooms and a guest room": none of the two
@@ -284,7 +284,7 @@ def _later(room: Named, place: int) -> bool:
     return room.extra and room.span is not None and room.span[0] > place
 
 
-def _known_rooms(state: Reading, sentence: list[Mark], k: int, level: int | None) -> list[Named]:
+def _known_rooms(state: Reading, sentence: list[Token], k: int, level: int | None) -> list[Named]:
     """Return the rooms that a phrase without role points at, where there are such rooms."""
     e, stock = sentence[k], state.inventory
     same = [r for r in stock.of(e.type) if not _later(r, e.first)]
@@ -297,7 +297,7 @@ def _known_rooms(state: Reading, sentence: list[Mark], k: int, level: int | None
     if _many(e):
         _within(state, e, e.number)
         return same
-    bare_nouns, theirs = "bare_nouns" in state.heard.lexicon.traits, all(r.id in stock.belongings or r.role == "ensuite" for r in same)
+    bare_nouns, theirs = "bare_nouns" in state.words.lexicon.traits, all(r.id in stock.belongings or r.role == "ensuite" for r in same)
     owned = e.type == "bathroom" and not bare_nouns and theirs
     other = e.type == "storage" and all(e.text != r.surface for r in same)
     if not e.det and (owned or other):
@@ -313,7 +313,7 @@ def _known_rooms(state: Reading, sentence: list[Mark], k: int, level: int | None
 # what numbers and articles introduce
 
 
-def introduce(state: Reading, sentences: list[list[Mark]]) -> None:
+def introduce(state: Reading, sentences: list[list[Token]]) -> None:
     """Make the rooms that numbers and indefinite articles introduce: whole counts first, so that later words may tell them apart."""
     for whole in (True, False):
         for sentence in sentences:
@@ -329,7 +329,7 @@ def introduce(state: Reading, sentences: list[list[Mark]]) -> None:
                     e.ids = tuple(r.id for r in rooms)
 
 
-def _count(state: Reading, e: Mark) -> list[Named]:
+def _count(state: Reading, e: Token) -> list[Named]:
     _fill(state, e, int(e.number or 1))
     rooms = state.inventory.of(e.type)[: int(e.number or 1)]
     for room in rooms:
@@ -337,14 +337,14 @@ def _count(state: Reading, e: Mark) -> list[Named]:
     return rooms
 
 
-def _whole(sentence: list[Mark], k: int) -> bool:
+def _whole(sentence: list[Token], k: int) -> bool:
     """Whether the number of a phrase is the count of all such rooms: "a two-bedroom flat", "three baths in total"."""
     e = sentence[k]
     total = any(x.kind == "flag" and x.value == "total" for x in sentence[max(0, k - 1) : k + 2])
     return (e.compound and not e.role) or (e.number > 0 and total)
 
 
-def _introduce_rooms(state: Reading, sentence: list[Mark], k: int, level: int | None) -> list[Named]:
+def _introduce_rooms(state: Reading, sentence: list[Token], k: int, level: int | None) -> list[Named]:
     """Return the rooms of a phrase with a number or an indefinite article."""
     e, stock, role = sentence[k], state.inventory, sentence[k].role
     count = int(e.number or (2 if e.plural and e.type not in PLURAL_NAMES else 1))
@@ -361,9 +361,9 @@ def _introduce_rooms(state: Reading, sentence: list[Mark], k: int, level: int | 
     elif not role and slots:
         if len(slots) == count == len(same) and count > 1:
             return slots
-        told_apart = all(r.whole for r in slots) or (e.number and count < len(slots))
+        distinct = all(r.whole for r in slots) or (e.number and count < len(slots) and "another" not in e.det)
         listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")
-        if told_apart and count <= len(slots) and (listed is None or listed is sentence[k - 1]):  # "two bedrooms: one bedroom with"
+        if distinct and count <= len(slots) and (listed is None or listed is sentence[k - 1]):  # "two bedrooms: one bedroom with"
             return [close(r, "", e.text, level) for r in slots[:count]]
     if same and count == 1 and not e.number and not role and e.type in ALONE and "another" not in e.det:
         return same[:1]

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 
 from pipeline.floorplan.language.clause import LIGHT, LIKE, LISTING, PLACES_AND_SIZES, Clause, attach, ids_of, measures_home, named_rooms
 from pipeline.floorplan.language.lexicon import kinds
-from pipeline.floorplan.language.marks import Mark
 from pipeline.floorplan.language.rooms import HALLS, PERSONAL, SOCIAL, Group, Named, Reading
+from pipeline.floorplan.language.tokens import Token
 
 DENIED = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}  # what "not" makes of a relation
 HOSTS = kinds("hosts")
@@ -13,7 +13,7 @@ NO_PARTS = {"bedroom", "living_room", "family_room", "garage"}  # nothing that a
 SECLUDED = {"storage", "closet", "wc", "bathroom", "balcony", "utility"}  # "X in Y": X opens off Y
 
 
-def read(state: Reading, sentence: list[Mark]) -> None:
+def read(state: Reading, sentence: list[Token]) -> None:
     """Read one sentence."""
     c = Clause(state, sentence)
     k = 0
@@ -31,9 +31,8 @@ def read(state: Reading, sentence: list[Mark]) -> None:
 # each reads one kind of element and returns where reading goes on, None for the next one
 
 
-def _np(c: Clause, k: int, e: Mark) -> None:
+def _np(c: Clause, k: int, e: Token) -> None:
     if e.banned:
-        c.state.understood(e.first, e.last)
         if not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and "/" in e.value) and e.role != "ensuite":
             c.state.banned.append((e.type, e))  # "no guest room" leaves the other bedrooms, "no kitchen-diner" a kitchen
         return
@@ -50,14 +49,14 @@ def _np(c: Clause, k: int, e: Mark) -> None:
     if c.left_out and e.det & {"each", "all"}:
         ids, c.run = tuple(i for i in ids if i not in c.left_out), []
     _own(c, e, c.stock.get(ids[0]) if c.owner else None)
-    for mark, rooms in c.shares(e, ids):
-        whole = (e.compound and mark.last <= e.first) or measures_home(c, k, mark, e.ids, False)
-        c.state.amounts.append((mark, None if whole else rooms))
+    for token, rooms in c.shares(e, ids):
+        whole = (e.compound and token.last <= e.first) or measures_home(c, k, token, e.ids, False)
+        c.state.amounts.append((token, None if whole else rooms))
     c.push(k, e, ids)
     _describe_rooms(c, k, e, ids)
 
 
-def _own(c: Clause, e: Mark, room: Named | None) -> None:
+def _own(c: Clause, e: Token, room: Named | None) -> None:
     """Read "grandparents with their own bedroom, bathroom and small kitchen": what follows in the list is theirs."""
     if room is None:
         return
@@ -71,7 +70,7 @@ def _own(c: Clause, e: Mark, room: Named | None) -> None:
         c.state.say("door", (room.id,), (c.owning,), e)
 
 
-def _describe_rooms(c: Clause, k: int, e: Mark, ids: tuple[str, ...]) -> None:
+def _describe_rooms(c: Clause, k: int, e: Token, ids: tuple[str, ...]) -> None:
     """Record what adjectives say of rooms."""
     if "melted" in e.adjectives:  # "lounge diner"
         c.state.say("merge", (*ids, *c.rooms_at(k + 2)), (), e)
@@ -87,7 +86,7 @@ def _describe_rooms(c: Clause, k: int, e: Mark, ids: tuple[str, ...]) -> None:
         c.state.say("area_equal", ids, (), e, LIKE)
 
 
-def _note(c: Clause, k: int, e: Mark) -> None:
+def _note(c: Clause, k: int, e: Token) -> None:
     """Note what changes how the words behind it are read: a verb, "which", a negation, and what ends one; and what stands by itself."""
     ahead = c.near(k + 1)
     if e.kind == "amount":
@@ -95,8 +94,8 @@ def _note(c: Clause, k: int, e: Mark) -> None:
     elif e.kind == "home":
         c.state.homes.append(e)
         c.state.studio = c.state.studio or (e if e.value else None)
-        for mark in e.amounts:
-            attach(c, k, mark, home=True)
+        for token in e.amounts:
+            attach(c, k, token, home=True)
         c.run = []
     elif e.kind == "owner":
         c.owner, c.owning = e.value, ""
@@ -120,7 +119,7 @@ def _note(c: Clause, k: int, e: Mark) -> None:
         c.state.say("largest_of_all", c.latest, (), e)
 
 
-def _enter(c: Clause, k: int, e: Mark) -> int:
+def _enter(c: Clause, k: int, e: Token) -> int:
     """Let a room be the one that one enters, and what follows go on from there: "into the hall", ", then a hall"."""
     named, j = c.after(k + 1, "enter", ())
     if group := named_rooms(named or c.latest):
@@ -130,16 +129,17 @@ def _enter(c: Clause, k: int, e: Mark) -> int:
     return max(j, k + 1)
 
 
-def _pron(c: Clause, k: int, e: Mark) -> None:
+def _pron(c: Clause, k: int, e: Token) -> None:
     """Read a pronoun: the rooms that it stands for are spoken of next."""
-    group = c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
-    e.ids = group
+    behind = c.near(k + 2) if e.value == "one" and (ahead := c.near(k + 1)) is not None and ahead.kind == "verb" else None
+    named = behind.ids if behind is not None else ()  # "one is a guest room"
+    group = named or c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
     if group:
         c.stands_for(e, group)
         c.subject = group if e.value != "it" or not c.subject else c.subject
 
 
-def _det(c: Clause, k: int, e: Mark) -> None:
+def _det(c: Clause, k: int, e: Token) -> None:
     """Read "both", "each", "all", "the other" where no room follows."""
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = ahead.kind if ahead is not None else ""
@@ -148,7 +148,7 @@ def _det(c: Clause, k: int, e: Mark) -> None:
         c.subject = c.run[-1].ids if again else ids_of(c.run)
         c.stands_for(e, c.subject)
     elif e.value == "each" and c.ends(k + 1) and before is not None and before.kind == "np" and len(c.latest) == 1 and not c.objects:
-        return  # "a bathroom for each": of whom is not told
+        return  # "a bathroom for each": of whom is not said
     elif e.value == "other" and kind in {"level", "verb"} and not any(r.open_slot for r in c.stock.of(c.state.parted)):
         c.push(k, e, ("*",))
     elif e.value in {"other", "both", "each", "all"} and kind != "np":
@@ -156,7 +156,7 @@ def _det(c: Clause, k: int, e: Mark) -> None:
         _pron(c, k, e)
 
 
-def _flag(c: Clause, k: int, e: Mark) -> None:
+def _flag(c: Clause, k: int, e: Token) -> None:
     """Read one flag."""
     c.state.flags.setdefault(e.value, e)
     if e.value == "daylight":  # "no windows in the bedroom", "the bath needs daylight"
@@ -176,7 +176,7 @@ def _flag(c: Clause, k: int, e: Mark) -> None:
 # relations
 
 
-def relate(c: Clause, k: int, e: Mark) -> int | None:  # noqa: PLR0911 - one answer per kind of relation
+def relate(c: Clause, k: int, e: Token) -> int | None:  # noqa: PLR0911 - one answer per kind of relation
     """Read one relation; return where to go on."""
     if e.value == "has":
         return has(c, k, e)
@@ -184,7 +184,7 @@ def relate(c: Clause, k: int, e: Mark) -> int | None:  # noqa: PLR0911 - one ans
         return except_rooms(c, k, e)
     if e.value.startswith("thru"):
         return through(c, k, e)
-    c.relative = c.relative or bool(c.state.heard.lexicon.sign("relative_cue") & set(e.text.split()[:3]))  # "que da al"
+    c.relative = c.relative or bool(c.state.words.lexicon.sign("relative_cue") & set(e.text.split()[:3]))  # "que da al"
     left, group, j = _sides(c, k, e)
     if not group:
         return _alone(c, k, e)
@@ -203,7 +203,6 @@ def relate(c: Clause, k: int, e: Mark) -> int | None:  # noqa: PLR0911 - one ans
         j += 1  # "the bath one reaches from the hall"
     elif e.value == "from" and (ahead := c.ahead(j, "verb", "det", "flag", "adj", "word", "pron")) is not None and ahead.value == "leads":
         c.goes_on(group)
-        c.objects = ()
         return j
     if not left:  # "off the foyer are a wc and the living room"
         c.waiting = (e, group)
@@ -217,7 +216,7 @@ def relate(c: Clause, k: int, e: Mark) -> int | None:  # noqa: PLR0911 - one ans
     return j
 
 
-def _sides(c: Clause, k: int, e: Mark) -> tuple[Group, Group, int]:
+def _sides(c: Clause, k: int, e: Token) -> tuple[Group, Group, int]:
     """Return who stands in front of a relation, who behind it, and where reading goes on."""
     ahead = c.near(k + 1)
     left = () if ahead is not None and ahead.value == "pair" else c.subjects(k, e)  # "dazwischen liegt das Bad"
@@ -226,11 +225,11 @@ def _sides(c: Clause, k: int, e: Mark) -> tuple[Group, Group, int]:
     return tuple(i for i in left if i not in group), group, j
 
 
-def _alone(c: Clause, k: int, e: Mark) -> int | None:
+def _alone(c: Clause, k: int, e: Token) -> int | None:
     """Read a relation that nothing follows: "kitchen and bath next to each other"."""
     ahead = c.near(k + 1)
     mutual = ahead is not None and ahead.kind == "reciprocal"
-    if e.value == "between" and e.text in c.state.heard.lexicon.sign("amid"):
+    if e.value == "between" and e.text in c.state.words.lexicon.sign("amid"):
         c.state.understood(e.first, e.last)  # "... as a buffer in between" points back at what was said
     if not mutual and e.value != "wall":  # "the two bedrooms must not share a wall"
         return None
@@ -240,7 +239,7 @@ def _alone(c: Clause, k: int, e: Mark) -> int | None:
     return k + 1 + mutual
 
 
-def _emit(c: Clause, e: Mark, left: Group, group: Group) -> None:
+def _emit(c: Clause, e: Token, left: Group, group: Group) -> None:
     """Record a relation between rooms, or that there is none."""
     cue = "door" if e.value in {"from", "chain", "in"} else e.value
     kinds = c.types((*left, *group))
@@ -260,7 +259,7 @@ def _emit(c: Clause, e: Mark, left: Group, group: Group) -> None:
 # ways
 
 
-def except_rooms(c: Clause, k: int, e: Mark) -> int:
+def except_rooms(c: Clause, k: int, e: Token) -> int:
     """Read "all rooms but the pantry open off the hall": those that are left out, and who goes on."""
     group, j = c.after(k + 1, "except", ())
     c.state.say("except", group, (), e)
@@ -274,11 +273,9 @@ def except_rooms(c: Clause, k: int, e: Mark) -> int:
     return max(j, k + 1)
 
 
-def through(c: Clause, k: int, e: Mark) -> int:
+def through(c: Clause, k: int, e: Token) -> int:
     """Read "you pass through the dining room to reach the kitchen", and what must not be so."""
     first, j = c.after(k + 1, "door", ())
-    while first and (x := c.near(j)) is not None and x.kind in {"verb", "comma"}:
-        j += 1
     second, j = c.after(j, "leads" if e.value == "thru" else "door", first) if first else ((), k + 1)
     if not second:
         return max(j, k + 1)
@@ -291,7 +288,7 @@ def through(c: Clause, k: int, e: Mark) -> int:
 # who has what
 
 
-def has(c: Clause, k: int, e: Mark) -> int | None:
+def has(c: Clause, k: int, e: Token) -> int | None:
     """Read "X with its own bathroom", "the living room has a terrace": rooms that hang on the one named before."""
     before = next((x for x in reversed(c.sentence[:k]) if x.kind in {"np", "home", "pron", "every", "det", "level"}), None)
     at = next((j for j in range(k + 1, len(c.sentence)) if c.sentence[j].kind not in {*LIGHT, "amount"}), None)
@@ -321,7 +318,7 @@ def has(c: Clause, k: int, e: Mark) -> int | None:
     return at + 1
 
 
-def _owners(c: Clause, e: Mark, before: Mark | None) -> Group:
+def _owners(c: Clause, e: Token, before: Token | None) -> Group:
     """Return who has what follows: the phrase in front, or the list in front of a verb; nobody where the home has it."""
     if before is None or before.kind in {"home", "level"} or not (c.run or c.subject):
         return ()
@@ -336,7 +333,7 @@ def _owners(c: Clause, e: Mark, before: Mark | None) -> Group:
     return owners
 
 
-def _give(c: Clause, k: int, e: Mark, owners: Group) -> int:
+def _give(c: Clause, k: int, e: Token, owners: Group) -> int:
     """Give bedrooms what follows: bathrooms, closets, balconies, as many as there are owners."""
     j, end, joined = k + 1, k + 1, ""
     given: Group = ()
@@ -358,7 +355,7 @@ def _give(c: Clause, k: int, e: Mark, owners: Group) -> int:
         j += 1
     if given:
         c.latest, c.subject, c.objects, c.verb = given, owners, given, False
-        c.run = [Mark("np", first=e.first, last=e.last, ids=given, type=c.stock.get(given[0]).type)]
+        c.run = [Token("np", first=e.first, last=e.last, ids=given, type=c.stock.get(given[0]).type)]
     return end
 
 
@@ -370,8 +367,9 @@ def _theirs(c: Clause, j: int, owners: Group, joined: str) -> bool:
     if x.role in {"shared", "guest"} or known or number > len(owners) or 1 < number < len(owners):
         return False
     if joined == "comma" and not own:
-        rest = next((y for y in c.sentence[j + 1 :] if not (y.kind in {"comma", "det"} or (y.kind == "np" and y.type in PERSONAL))), None)
-        return rest is not None and rest.kind == "and"  # "with a bath, closet and balcony"
+        rest = [y for y in c.sentence[j + 1 :] if not (y.kind in {"comma", "det"} or (y.kind == "np" and y.type in PERSONAL))]
+        last = next((y for y in c.sentence if rest and y.kind == "np" and y.first >= rest[0].last), None)
+        return bool(rest) and rest[0].kind == "and" and (last is None or last.type in PERSONAL)  # "with a bath, closet and balcony"
     return not joined or own or not ("another" in x.det or x.number or x.type == "wc")
 
 
@@ -394,7 +392,7 @@ def _things(c: Clause, j: int, owners: Group) -> Group:
     return x.ids
 
 
-READERS: Mapping[str, Callable[[Clause, int, Mark], int | None]] = {
+READERS: Mapping[str, Callable[[Clause, int, Token], int | None]] = {
     **dict.fromkeys(("amount", "home", "owner", "outside", "verb", "relative", "neg", "but", "comma", "every", "adj"), _note), **PLACES_AND_SIZES,
     "np": _np, "enter": _enter, "pron": _pron, "det": _det, "flag": _flag, "cue": relate,
 }  # fmt: skip

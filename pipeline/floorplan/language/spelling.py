@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.lexicon import FARTHER, LANGUAGES, STRONG, Language, Lexicon, Meaning, kinds, lexicon, unread
-from pipeline.floorplan.language.text import Token, characters, fold, is_han, tokenize
+from pipeline.floorplan.language.text import Word, characters, fold, is_han, split_words
 
 SHORTEST, LONG = 4, 8  # one error from SHORTEST letters on, two from LONG on
 ONE, USUAL = 1.2, 0.9  # how far a word with one error is at most, and with a usual one
@@ -16,16 +16,16 @@ LONGEST = 30  # no word of a home is longer
 FAR, SURELY = 9.0, 1.5  # farther than any word is, and the distance from which on two words as near are no better than none
 
 
-def repair(tokens: Sequence[Token], texts: Sequence[str], lex: Lexicon) -> tuple[list[Token], list[str]]:
-    """Return the tokens with their words of the vocabulary: inflected and mistyped ones replaced, run-together ones split."""
-    repaired: list[Token] = []
-    words: list[str] = []
-    for token, text in zip(tokens, texts, strict=True):
+def repair(written: Sequence[Word], texts: Sequence[str], lex: Lexicon) -> tuple[list[Word], list[str]]:
+    """Return the words with what they are in the vocabulary: inflected and mistyped ones replaced, run-together ones split."""
+    repaired: list[Word] = []
+    read: list[str] = []
+    for word, text in zip(written, texts, strict=True):
         parts = (text,) if text in lex.vocabulary or not text.replace("'", "").isalpha() else resolve(text, lex.language, every=True)
         for part in parts:
-            repaired.append(token)
-            words.append(part)
-    return repaired, words
+            repaired.append(word)
+            read.append(part)
+    return repaired, read
 
 
 @functools.lru_cache(maxsize=8192)
@@ -166,13 +166,13 @@ ROOMS_WEIGHT = 2.0
 @functools.lru_cache(maxsize=16)
 def detect(prompt: str) -> Language:
     """Return the language of a prompt. Raises RefusedError where too few of its words belong to any that is read."""
-    tokens = tokenize(prompt)
-    texts = [fold(t.text) for t in tokens if any(c.isalpha() for c in t.text)][:MOST]
+    written = split_words(prompt)
+    texts = [fold(t.text) for t in written if any(c.isalpha() for c in t.text)][:MOST]
     if not texts:
         raise RefusedError(_quote_prompt(prompt, "no words in the prompt"), f"say in {_read()} which rooms you want")
     han = sum(is_han(t[0]) for t in texts)
     letters = characters()["latin"] + characters()["han"]
-    foreign = sum(t.text[0].isalpha() and not re.match(rf"[{letters}]", t.text) for t in tokens)  # in a script that is not read
+    foreign = sum(t.text[0].isalpha() and not re.match(rf"[{letters}]", t.text) for t in written)  # in a script that is not read
     if han and han >= 0.3 * len(texts) and not foreign:
         return next(language for language in LANGUAGES if _han(language))
     scores = [(*_score(language, texts, repaired=False), language) for language in LANGUAGES if not _han(language)]

@@ -17,7 +17,7 @@ HALVES = {"½": 0.5, "1½": 1.5}
 
 
 @dataclass(frozen=True, slots=True)
-class Token:
+class Word:
     """A word (lower case) = prompt[start:end] as written; `number` is the value of figures."""
 
     text: str
@@ -71,21 +71,21 @@ def clean(prompt: str) -> tuple[str, list[int]]:
     return "".join(cleaned), places
 
 
-def tokenize(prompt: str) -> list[Token]:
+def split_words(prompt: str) -> list[Word]:
     """Split a prompt into words, figures and marks; Chinese into single characters."""
-    return list(_tokens(prompt))
+    return list(_words(prompt))
 
 
 @functools.lru_cache(maxsize=16)  # a prompt is read several times: for its language, its furniture, its rooms
-def _tokens(prompt: str) -> tuple[Token, ...]:
+def _words(prompt: str) -> tuple[Word, ...]:
     text, places = clean(prompt)
-    tokens = []
+    found = []
     for match in characters()["word"].finditer(text):
         raw = match.group()
         if raw[0].isalpha() and raw.endswith("'") and not raw.endswith(characters()["plural_genitive"]):
             raw = raw[:-1]
-        tokens.append(Token(raw, places[match.start()], places[match.end() - 1] + 1, _number(raw)))
-    return tuple(tokens)
+        found.append(Word(raw, places[match.start()], places[match.end() - 1] + 1, _number(raw)))
+    return tuple(found)
 
 
 def _number(raw: str) -> float | None:
@@ -128,7 +128,7 @@ def words(phrase: str) -> tuple[str, ...]:
         return tuple(phrase.translate(characters()["alike"]))
     if plain.replace(" ", "").isalpha() and (ascii_only or not any(map(is_han, plain))):
         return tuple(fold(w) for w in plain.split())
-    return tuple(fold(t.text) for t in tokenize(phrase) if t.text != "-")
+    return tuple(fold(t.text) for t in split_words(phrase) if t.text != "-")
 
 
 SHORTEST = 3  # letters of a part of a compound

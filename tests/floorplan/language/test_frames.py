@@ -13,12 +13,12 @@ from tests.floorplan.language.faults import faults
 
 KINDS = {
     "wish", "people", "fill", "ignored", "needless", "activity", "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "dash", "det", "enough", "enter", "every", "factor", "fix", "flag", "home", "hyphen", "join", "level", "look", "neg", "num",
-    "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "suite", "times", "to", "unit", "verb", "via", "wing", "zone",
+    "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "stop", "suite", "times", "to", "unit", "verb", "via", "wing", "zone",
     "single", "two", "many", "some", "zero", "small", "bounded", "plain_area", "large", "vast", "one_room", "lone", "some_of", "halved", "roomy", "^", "$",
 }  # fmt: skip
 
 
-def test_every_atom_is_a_kind_of_mark_or_a_sign_of_some_language():
+def test_every_atom_is_a_kind_of_token_or_a_sign_of_some_language():
     signs = {sign for language in LANGUAGES for named in lexicon(language).signs.values() for sign in named}
     for frame in frames.frames():
         for atom in frame.atoms:

@@ -32,18 +32,18 @@ def cases(language: str) -> Iterator[tuple[str, dict[str, Any], str]]:
     table = yaml.safe_load((FOLDER / f"{language}.yaml").read_text(encoding="utf-8"))
     for entry in table["meanings"]:
         for way in entry["ways"]:
-            told = way if isinstance(way, Mapping) else {"way": way}
+            row = way if isinstance(way, Mapping) else {"way": way}
             for chosen in entry["choices"]:
                 types = dict(zip("abcde", chosen, strict=False))
                 bare = entry.get("fill", {})
                 names = {k: bare.get(t, table["rooms"].get(t, t)) for k, t in types.items()}
                 names |= {k.upper(): f"{table.get('article', '')}{n}" for k, n in names.items()}
-                prompt = told["way"].format(**names) if types else told["way"]
+                prompt = row["way"].format(**names) if types else row["way"]
                 for apart, joined in CONTRACTED.items() if language == "es" else ():
                     prompt = prompt.replace(apart, joined)
-                wanted = _typed(told.get("gives", entry["gives"]), types)
-                wanted.setdefault("rooms", {t: 1 for k, t in types.items() if "{" + k in told["way"] or "{" + k.upper() in told["way"]})
-                yield entry["meaning"], {"prompt": prompt[0].upper() + prompt[1:], **wanted}, told.get("known", "")
+                wanted = _typed(row.get("gives", entry["gives"]), types)
+                wanted.setdefault("rooms", {t: 1 for k, t in types.items() if "{" + k in row["way"] or "{" + k.upper() in row["way"]})
+                yield entry["meaning"], {"prompt": prompt[0].upper() + prompt[1:], **wanted}, row.get("known", "")
 
 
 def wrong(case: Mapping[str, Any]) -> list[str]:

@@ -3,17 +3,17 @@
 import pytest
 import yaml
 
-from pipeline.floorplan.language import marks
+from pipeline.floorplan.language import tokens
 from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
-from pipeline.floorplan.language.marks import listen, segment
 from pipeline.floorplan.language.parser import parse
 from pipeline.floorplan.language.spelling import distance, resolve
-from pipeline.floorplan.language.text import Verbs, clean, fold, tokenize
+from pipeline.floorplan.language.text import Verbs, clean, fold, split_words
+from pipeline.floorplan.language.tokens import read_words, segment
 
 
 def amounts(text, language="en"):
-    heard = listen(text, language)
-    return [m for m in marks.amounts(segment(heard), heard) if m.kind == "amount"]
+    words = read_words(text, language)
+    return [m for m in tokens.amounts(segment(words), words) if m.kind == "amount"]
 
 
 @pytest.mark.parametrize(
@@ -25,8 +25,8 @@ def amounts(text, language="en"):
     ],
 )  # fmt: skip
 def test_numbers(text, language, value):
-    (mark,) = segment(listen(text, language))
-    assert (mark.kind, mark.number) == ("num", value)
+    (token,) = segment(read_words(text, language))
+    assert (token.kind, token.number) == ("num", value)
 
 
 @pytest.mark.parametrize(
@@ -52,10 +52,10 @@ def test_numbers(text, language, value):
     ],
 )
 def test_amounts(text, language, low, high, bound, unit):
-    (mark,) = amounts(text, language)
-    assert mark.number == pytest.approx(low)
-    assert mark.high == (None if high is None else pytest.approx(high))
-    assert (mark.bound, mark.value) == (bound, unit)
+    (token,) = amounts(text, language)
+    assert token.number == pytest.approx(low)
+    assert token.high == (None if high is None else pytest.approx(high))
+    assert (token.bound, token.value) == (bound, unit)
 
 
 @pytest.mark.parametrize(
@@ -87,13 +87,14 @@ def test_common_words_stay_as_they_are(language):
     raw = yaml.safe_load((FOLDER / f"{language}.yaml").read_text(encoding="utf-8"))
     words = [fold(w.strip()) for w in raw["common"].split(",")]
     assert len(words) > 200
-    heard = listen(" ".join(words), language)
-    assert heard.texts == [lexicon(language).tenses.get(w, w) for w in words]  # verbs in the one tense that is read
+    assert read_words(" ".join(words), language).texts == [
+        lexicon(language).tenses.get(w, w) for w in words
+    ]  # verbs in the one tense that is read
 
 
 @pytest.mark.parametrize("word", ["house", "couch", "both", "tall", "without", "xylophone", "flibbertigibbet"])
 def test_other_words_are_left_alone(word):
-    assert listen(word, "en").texts == [word]
+    assert read_words(word, "en").texts == [word]
 
 
 @pytest.mark.parametrize(("a", "b", "alike"), [("dsek", "desk", True), ("desck", "desk", True), ("dek", "desk", True), ("dusk", "desk", True), ("disc", "desk", False), ("des", "deskk", False)])  # fmt: skip
@@ -113,7 +114,7 @@ def test_text_is_cleaned_and_keeps_its_places():
     text, places = clean("A\u200bB\u202eＣ\x00廳")
     assert text == "abc 厅"
     assert places == [0, 2, 4, 5, 6]
-    assert [(t.text, t.start, t.end) for t in tokenize("Küche, 12 m²")] == [("küche", 0, 5), (",", 5, 6), ("12", 7, 9), ("m²", 10, 12)]
+    assert [(t.text, t.start, t.end) for t in split_words("Küche, 12 m²")] == [("küche", 0, 5), (",", 5, 6), ("12", 7, 9), ("m²", 10, 12)]
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
