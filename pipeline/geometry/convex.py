@@ -6,11 +6,9 @@ A polygon is (V, 2) [m], counter-clockwise; repeated vertices are allowed (they 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.geometry.compiled import borrowing, compiled
-
-Floats = NDArray[np.float64]
 
 
 @borrowing

@@ -4,12 +4,10 @@ import functools
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.geometry.prisms import BULGE, MARGIN, STEPS, Prisms, Sweep, covering, join_prisms
 from pipeline.geometry.walls import LEAF_THICKNESS, Leaf
-
-Floats = NDArray[np.float64]
 
 ROOM = 0.01  # [m] about the leaf and its levers: what stands in a room need not stand nearer to its door, as units of a kitchen do to each other
 # A box around the levers: from the lock edge, out of each face, above the leaf's lower edge [m].

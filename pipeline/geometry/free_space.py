@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Opening, Room
 from pipeline.geometry.compiled import borrowing
 from pipeline.geometry.floor_raster import Mask, Raster, dilate, fill_all, standing
 from pipeline.geometry.prisms import Prisms
-
-Floats = NDArray[np.float64]
 
 PASSABLE = ("door", "open", "portal", "entrance")  # kinds of openings that one walks through
 

@@ -7,8 +7,8 @@ import math
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset, Joint, JointType, Link
 from pipeline.geometry.memo import cached_on_asset
 
@@ -24,15 +24,15 @@ class Axis(Protocol):
         """Whether it turns or slides."""
 
     @property
-    def axis(self) -> NDArray[np.float64]:
+    def axis(self) -> Floats:
         """Unit direction (3,)."""
 
     @property
-    def origin(self) -> NDArray[np.float64]:
+    def origin(self) -> Floats:
         """A point (3,) on it."""
 
 
-def joint_motion(joint: Axis, position: float) -> NDArray[np.float64]:
+def joint_motion(joint: Axis, position: float) -> Floats:
     """Return the transform (4, 4) by which `joint` alone moves its child from rest, at `position` [rad, or units of `origin`]."""
     T = np.eye(4)
     if joint.type == "prismatic":
@@ -43,15 +43,14 @@ def joint_motion(joint: Axis, position: float) -> NDArray[np.float64]:
     return T
 
 
-def rotation(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+def rotation(axis: Floats, angle: float) -> Floats:
     """Return the rotation matrix (3, 3) about a unit `axis` (3,) by `angle` [rad] (Rodrigues' formula)."""
     x, y, z = axis
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    turned: NDArray[np.float64] = np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K)
-    return turned
+    return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
 
 
-def link_transforms(asset: Asset, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+def link_transforms(asset: Asset, positions: Floats) -> Floats:
     """Return T (L, 4, 4) that carries each link's points from rest to joint `positions` (J,) [rad or m]."""
     T = np.broadcast_to(np.eye(4), (len(asset.links), 4, 4)).copy()
     for joint, position in zip(asset.joints, positions, strict=True):
@@ -75,7 +74,7 @@ def moved_links(asset: Asset, joint_index: int) -> list[int]:
     return moved
 
 
-def link_points(link: Link) -> NDArray[np.float64]:
+def link_points(link: Link) -> Floats:
     """Return the vertices (V, 3) [m, object frame at rest] of a link's colliders, or of its visuals if it has none."""
     meshes = link.colliders or link.visuals
     if not meshes:
@@ -83,7 +82,7 @@ def link_points(link: Link) -> NDArray[np.float64]:
     return np.concatenate([np.asarray(m.vertices, np.float64) for m in meshes])
 
 
-def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> NDArray[np.float64]:
+def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> Floats:
     """Return the box (2, 3) [m, object frame], lower and upper corner, of all that a joint moves over its range.
 
     Other joints stay at 0. `steps` positions are taken; what an arc bulges between them is added.
@@ -105,7 +104,7 @@ def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> NDArray[np.floa
     return corners
 
 
-def handle_point(asset: Asset, joint_index: int) -> NDArray[np.float64]:
+def handle_point(asset: Asset, joint_index: int) -> Floats:
     """Return where a hand takes hold (3,) [m, object frame at rest].
 
     The middle of the handle that moves with the joint, by the box of that part or its mesh; without one, for a slider
@@ -125,16 +124,14 @@ def handle_point(asset: Asset, joint_index: int) -> NDArray[np.float64]:
     if joint.type == "prismatic":
         middle = _middle(points)
         ahead = float(((points - middle) @ joint.axis).max())
-        face: NDArray[np.float64] = middle + joint.axis * ahead
-        return face
+        return middle + joint.axis * ahead
     away = points - joint.origin
     radial = away - np.outer(away @ joint.axis, joint.axis)
     radius = np.linalg.norm(radial, axis=1)
-    far: NDArray[np.float64] = points[radius > 0.98 * radius.max()].mean(0)
-    return far
+    return np.asarray(points[radius > 0.98 * radius.max()].mean(0))
 
 
-def opening_direction(asset: Asset, joint_index: int) -> NDArray[np.float64]:
+def opening_direction(asset: Asset, joint_index: int) -> Floats:
     """Return the unit direction (3,) in which the handle starts to move when the joint opens [object frame]."""
     joint = asset.joints[joint_index]
     if joint.type == "prismatic":
@@ -144,7 +141,7 @@ def opening_direction(asset: Asset, joint_index: int) -> NDArray[np.float64]:
     return start / length if length > 1e-9 else np.array([0.0, -1.0, 0.0])
 
 
-def facing(asset: Asset, joint_index: int) -> NDArray[np.float64]:
+def facing(asset: Asset, joint_index: int) -> Floats:
     """Return the plan direction (2,) from which a part is opened [object frame]: where its handle sets off to.
 
     For what opens upwards or down, or slides in its own plane, it is the object's front.
@@ -158,11 +155,10 @@ def facing(asset: Asset, joint_index: int) -> NDArray[np.float64]:
 
 
 @cached_on_asset
-def grips(asset: Asset) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]:
+def grips(asset: Asset) -> tuple[tuple[Floats, Floats], ...]:
     """Return `handle_point` and `facing` of every joint."""
     return tuple((handle_point(asset, k), facing(asset, k)) for k in range(len(asset.joints)))
 
 
-def _middle(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    middle: NDArray[np.float64] = (points.min(0) + points.max(0)) / 2
-    return middle
+def _middle(points: Floats) -> Floats:
+    return np.asarray((points.min(0) + points.max(0)) / 2)

@@ -12,6 +12,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Plan
 from pipeline.geometry.tiling import convex_cover, convex_pieces
 from pipeline.geometry.walls import SLAB, Cut, Prism, Shell
@@ -59,14 +60,14 @@ def _line(cut: Cut) -> tuple[float, ...]:
     return tuple(np.round([*along, across.min(), across.max()], 4).tolist())
 
 
-def _spanning_rectangle(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def _spanning_rectangle(first: Floats, second: Floats) -> Floats:
     """Return the rectangle (4, 2) over two of the same wall."""
     hull = shapely.convex_hull(shapely.MultiPoint(np.concatenate([first, second])))
     box = shapely.geometry.polygon.orient(shapely.minimum_rotated_rectangle(hull))
     return np.asarray(box.exterior.coords)[:-1]
 
 
-def _solid(quad: NDArray[np.float64], bottom: float, top: float, built: Shell) -> bool:
+def _solid(quad: Floats, bottom: float, top: float, built: Shell) -> bool:
     """Whether nothing but wall is in the quad (4, 2) between two heights."""
     wall, holes = _wall_between(built, bottom, top)
     around = Polygon(quad)

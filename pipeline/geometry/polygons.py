@@ -6,12 +6,10 @@ A room polygon is (n, 2) [m], counter-clockwise, simple, not closed, not necessa
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.geometry.compiled import borrowing, compiled
 from pipeline.geometry.convex import gap
-
-Floats = NDArray[np.float64]
 
 SKIN = 0.05  # thickness given to walls where a shape's crossing is tested [m]; thinner than any wall
 

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset
 from pipeline.geometry.contact import first_hits, group_boxes
 from pipeline.geometry.kinematics import OPENERS, joint_motion, joint_range, link_points, moved_links, sweep_box
@@ -13,7 +13,6 @@ from pipeline.geometry.prisms import Prisms, join_prisms, prism, sweep_of
 
 TOUCH = 0.005  # parts that are in each other by no more do not block each other [m]
 HELD = ("hinge_handle", "hinge_knob", "slider_button")  # what a hand takes hold of waits for nothing
-Floats = NDArray[np.float64]
 
 
 def with_prerequisites(asset: Asset) -> Asset:

@@ -12,15 +12,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.entities.asset import Asset, Joint, Link
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.convex import hull
 from pipeline.geometry.kinematics import joint_motion, joint_range, moved_links
 from pipeline.geometry.memo import cached_on_asset
-
-Floats = NDArray[np.float64]
 
 CORNERS = 12  # vertices kept per prism; rounder ones are covered by a polygon of that many sides
 STEPS = 12  # least number of positions per joint
@@ -35,17 +33,16 @@ class Prisms:
     """P upright prisms: `corners` (P, CORNERS, 2) [m] of which `count` (P,) are used, `z` (P, 2) [m], `part` (P,)."""
 
     corners: Floats
-    count: NDArray[np.int64]
+    count: Ints
     z: Floats
-    part: NDArray[np.int64]
+    part: Ints
 
     def __len__(self) -> int:
         return len(self.count)
 
     def polygon(self, i: int) -> Floats:
         """Return the plan polygon (n, 2) of prism i."""
-        corners: Floats = self.corners[i, : self.count[i]]
-        return corners
+        return self.corners[i, : self.count[i]]
 
     def placed(self, position: Floats, yaw: float, scale: Floats) -> Prisms:
         """Return the prisms in the world: scaled, turned by `yaw` [rad], moved to `position` (3,) [m]."""
@@ -133,7 +130,7 @@ def covering(points: Floats, first: int = 0, margin: float = 0.0) -> Prisms:
 
 
 @compiled
-def _cover(points: Floats, margin: float) -> tuple[Floats, NDArray[np.int64], Floats]:
+def _cover(points: Floats, margin: float) -> tuple[Floats, Ints, Floats]:
     """Return corners (S, CORNERS, 2), their number, 0 where degenerate, and z (S, 2) of prisms over points (S, N, 3)."""
     sets = points.shape[0]
     corners, count, z = np.zeros((sets, CORNERS, 2)), np.zeros(sets, np.int64), np.zeros((sets, 2))
@@ -195,8 +192,7 @@ def sweep_of(asset: Asset, index: int, margin: float = 0.0) -> Sweep:
 
 def _moved(motions: Floats, points: Floats) -> Floats:
     """Return points (N, 3) under each of S maps: (S, N, 3)."""
-    moved: Floats = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
-    return moved
+    return np.asarray(np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3])
 
 
 def _tangents(joint: Joint, positions: Floats) -> Floats:

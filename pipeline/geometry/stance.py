@@ -6,26 +6,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.convex import distance_to
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.prisms import Prisms
 from pipeline.geometry.robot import Robot
 
-Floats = NDArray[np.float64]
-
 DISTANCES = 11  # distances to the handle that are tried
 TURN = 15.0  # between the sides that are tried [deg]
 
 
 def stand_pose(
-    grip: Floats,
-    heading: Floats,
-    swept: Prisms,
-    floor: float,
-    space: FreeSpace,
-    label: int,
-    robot: Robot,
+    grip: Floats, heading: Floats, swept: Prisms, floor: float, space: FreeSpace, label: int, robot: Robot
 ) -> tuple[float, float] | None:
     """Return (x, y) [m] at which the robot, within one connected part of the floor, reaches the grip; None if nowhere.
 
@@ -74,7 +67,7 @@ def _search(
     origin: Floats,
     cell: float,
     corners: Floats,
-    count: NDArray[np.int64],
+    count: Ints,
     radius: float,
 ) -> tuple[float, float, bool]:
     if label == 0:

@@ -8,11 +8,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.card import cards
 
-Floats = NDArray[np.float64]
 LEAST_SPREAD = 0.08  # relative; a narrower one would refuse what is merely unusual
 FACTORS = (1.0, 0.01, 100.0)  # to metres
 AGREES = 3.0  # a model that is at most so many times as large or small as its declared box is in that unit

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset, Joint, Link, PartBox
 from pipeline.geometry.prerequisites import with_prerequisites
 from pipeline.sources.articulated.fitting import fit_shape
@@ -22,7 +22,6 @@ from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.taxonomy import Taxonomy
 
-Floats = NDArray[np.float64]
 LIDS = ("hinge_lid", "slider_lid")
 SHORT = {"gapartnet": "ga", "partnet-mobility": "pm", "urdf": "ur"}
 

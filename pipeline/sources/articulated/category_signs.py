@@ -5,13 +5,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.card import cards
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapePart
 from pipeline.sources.meshes.mesh_solids import Part
 
-Floats = NDArray[np.float64]
 CLEAR = 0.9  # opacity below which a door is glazed
 LEAF = 0.05  # share of the front from which on what slides along it is a door
 FLAT = 5.0  # a piece this much wider than thick, both ways, is a board

@@ -7,16 +7,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Link
 from pipeline.sources.articulated.shape import ShapeJoint
 from pipeline.sources.meshes.mesh_solids import outside
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.touching import LEFT_ALONE, TOUCHED, UP, spread
-
-Floats = NDArray[np.float64]
 
 DRAWER = "slider_drawer"
 BESIDE = 0.025  # [m] between the outside of a carcass and the drawers in it, at its sides

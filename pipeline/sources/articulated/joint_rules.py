@@ -5,8 +5,8 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import PART_CLASSES, JointType
 from pipeline.geometry.kinematics import joint_motion
 from pipeline.sources.articulated.mobility_v2 import Mobility
@@ -14,7 +14,6 @@ from pipeline.sources.articulated.part_classes import words_of
 from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, apply, span_of
 from pipeline.sources.articulated.urdf import UrdfJoint
 
-Floats = NDArray[np.float64]
 TURNS = 4 * math.pi  # [rad] a range beyond this is no limit
 SMALLEST = {"revolute": 1e-3, "prismatic": 1e-4}  # ranges [rad, units] below which nothing moves
 WORDS = {"revolute": ("hinge",), "prismatic": ("slider", "slider+")}  # mobility_v2.json's for a joint that moves so

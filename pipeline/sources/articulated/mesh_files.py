@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.sources.articulated.shape import Note
 from pipeline.sources.articulated.urdf import Shape
 from pipeline.sources.guarded import Folder
@@ -17,8 +17,6 @@ from pipeline.sources.meshes.primitives import primitive
 from pipeline.sources.meshes.scene_file import MAX_SCENE, SceneMaterial, parse_scene
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 PACKAGE = re.compile(r"^(?:package|model)://", re.IGNORECASE)
 MAX_TOTAL = 1_500_000  # triangles of all files of an object together, counted once per use
 

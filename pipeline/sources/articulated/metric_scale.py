@@ -13,15 +13,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.articulated.category_signs import Signs, log_likelihood
 from pipeline.sources.articulated.part_classes import text_field
 from pipeline.sources.guarded import MIB, Folder, finite, read_json
 from pipeline.sources.reasons import SourceError
 from pipeline.sources.sizes import sizes
 
-Floats = NDArray[np.float64]
 COMMON = 30  # models that every category counts beside its own, so that none is ruled out for being rare
 UNITS = (1.0, 0.01, 0.001)  # metres per unit of files that are to scale: metres, centimetres, millimetres
 METRIC = 2.5  # rms of standard deviations within which a shape passes for one that is in metres already

@@ -8,13 +8,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pipeline.arrays import Floats
 from pipeline.sources.articulated.part_classes import text_field
 from pipeline.sources.guarded import MIB, Folder, finite, read_json
 
-Floats = NDArray[np.float64]
 NAME = "mobility_v2.json"
 
 

@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.articulated.joint_rules import close_drawn_open
 from pipeline.sources.articulated.part_classes import box_of, shaped_class
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
 from pipeline.sources.meshes.mesh_solids import qhull_of
 
-Floats = NDArray[np.float64]
 FRONT = np.array([0.0, -1.0, 0.0])
 
 

@@ -12,8 +12,8 @@ from pathlib import PurePosixPath
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.metric_scale import UNITS
 from pipeline.sources.articulated.part_boxes import complete_shape
@@ -23,7 +23,6 @@ from pipeline.sources.articulated.urdf import MAX_URDF, Shape, Urdf, UrdfJoint, 
 from pipeline.sources.guarded import Folder
 from pipeline.taxonomy import Taxonomy
 
-Floats = NDArray[np.float64]
 Posed = TypeVar("Posed", Shape, UrdfJoint)
 UPRIGHT = {2: np.eye(3), 1: np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}  # rotations that bring an axis to z
 SNAP = 0.01  # [rad] an angle this near to a right one is one

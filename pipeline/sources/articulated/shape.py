@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.entities.asset import JointType, Mesh
 from pipeline.geometry.kinematics import joint_motion
 from pipeline.sources.meshes.inertials import Inertial
 from pipeline.sources.meshes.visual_meshes import Palette
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Note = tuple[str, str, str]  # (what, reason, detail)
 
 

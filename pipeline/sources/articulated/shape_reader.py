@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Mesh
 from pipeline.sources.articulated import joint_rules
 from pipeline.sources.articulated.mesh_files import MeshFiles
@@ -23,7 +23,6 @@ from pipeline.sources.meshes.obj_file import MtlMaterial, ObjFile, ObjGroup
 from pipeline.sources.meshes.visual_meshes import Palette, visual
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float64]
 LIKE = 0.03  # share of the object's diagonal within which the boxes of two sets of meshes of a body agree
 POST = 0.02  # the same for the thickness of the post that stands in for a frame that a door lacks
 

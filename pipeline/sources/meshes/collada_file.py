@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.sources.meshes.collada_materials import Elements, material
 from pipeline.sources.meshes.obj_file import (
     MAX_COORDINATE,
@@ -27,8 +28,6 @@ from pipeline.sources.meshes.obj_file import (
 from pipeline.sources.meshes.xml_file import xml_root
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 MAX_DAE = 16 << 20  # bytes; numbers of one digit take eight times their text
 MAX_ELEMENTS = 200_000
 DEPTH = 64  # of the tree of nodes

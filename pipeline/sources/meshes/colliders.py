@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.entities.asset import Link, Mesh
 from pipeline.sources.densities import BOARD, BOXES, HOLLOW, MINIMUM
 from pipeline.sources.meshes.cutting import cut
@@ -20,8 +20,6 @@ from pipeline.sources.meshes.sides import with_few_sides
 from pipeline.sources.meshes.touching import TOUCHED, Felt, simpler
 from pipeline.sources.settings import ModelLimits
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Dissected = tuple[Part, Floats, Ints]
 # The work that an object may cost, in counts: the same object gives the same colliders however busy the machine is.
 WORTH = 1e-3  # share of the largest hull below which cutting a part into pieces changes nothing that a robot feels

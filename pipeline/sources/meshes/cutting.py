@@ -15,15 +15,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
+from pipeline.arrays import Bools, Floats, Ints
 from pipeline.sources.meshes.mesh_solids import cross, qhull_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 CELLS = 120_000  # of a grid at most
 FINE = 2.0  # cells that a tolerance is wide, where CELLS allow it

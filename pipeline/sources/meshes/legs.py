@@ -4,13 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import MultiPoint
 from shapely.geometry.base import BaseGeometry
 
+from pipeline.arrays import Bools, Floats
 from pipeline.sources.meshes.mesh_solids import Part, combine_parts
-
-Floats = NDArray[np.float64]
 
 UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
 LOW, LEG = 0.55, 0.12  # [m] and under a table too low for a seat to be drawn up to it; how wide a leg of that is at most, or a stretcher
@@ -52,7 +50,7 @@ def legs_under(pieces: Sequence[Part], low: float, most: float) -> list[Part]:
     return [p for p, is_leg in zip(pieces, legs, strict=True) if is_leg]
 
 
-def narrow_bars(boxes: Floats) -> NDArray[np.bool_]:
+def narrow_bars(boxes: Floats) -> Bools:
     """Return which of pieces, by their boxes (P, 2, 3), are narrow and have no other above them."""
     over = (boxes[:, None, 0, 2] >= boxes[None, :, 1, 2] - SEAM) & (boxes[:, None, 0] < boxes[None, :, 1])[:, :, :2].all(axis=2)
     over &= (boxes[:, None, 1] > boxes[None, :, 0])[:, :, :2].all(axis=2)

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from pipeline.arrays import Bools, Floats, Ints
 
 WELD = 1e-5  # share of the mesh's diagonal within which vertices are one
 MAX_HULL = 64  # vertices; PhysX takes no more in one convex piece
@@ -142,7 +140,7 @@ def _compact(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
     return points[inside], index.reshape(faces.shape)
 
 
-def _whole(faces: Ints, label: Ints) -> NDArray[np.bool_]:
+def _whole(faces: Ints, label: Ints) -> Bools:
     """Return (F,) whether the face's label is a closed surface: every edge of its faces used once in each direction."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     size = int(faces.max(initial=0)) + 1

@@ -9,12 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.sources.reasons import SourceError
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 BOM = b"\xef\xbb\xbf"
 MAX_OBJ = 64 << 20  # bytes

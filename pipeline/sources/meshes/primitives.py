@@ -1,13 +1,10 @@
 """Boxes, cylinders and spheres of URDF as triangle meshes."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.sources.meshes.mesh_solids import hull
 from pipeline.sources.reasons import SourceError
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def primitive(kind: str, values: tuple[float, ...], where: str) -> tuple[Floats, Ints]:

@@ -3,11 +3,9 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.meshes.mesh_solids import Part, convex
-
-Floats = NDArray[np.float64]
 
 STAVES = 6  # pieces that are taken for a ring
 FEWEST, MOST = 3, 12  # sectors of a vessel

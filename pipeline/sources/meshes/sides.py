@@ -1,13 +1,10 @@
 """Hulls of no more sides than PhysX takes. What has more it makes anew, and a level top comes out lower or askew: a cup on a round table turned by 1.7 degrees."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from pipeline.arrays import Floats, Ints
 from pipeline.sources.meshes.mesh_solids import LEFT_OUT, hull, outside, qhull_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SIDES = 64
 ALIKE = 3  # decimals of normals, and of distances [m], by which two sides are one

@@ -1,11 +1,9 @@
 """Soft things as they lie, and cushions with level tops: what lies on a swell rolls, where a real one gives way."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, convex, extremes
-
-Floats = NDArray[np.float64]
 
 CORNERS = 8  # of the outline on which a soft thing lies, and of a level top, at most
 SOLE = 0.8  # share of its outline that a soft thing lies on

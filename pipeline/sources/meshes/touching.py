@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from pipeline.arrays import Bools, Floats, Ints
 from pipeline.card import Category
 from pipeline.geometry.compiled import compiled
 from pipeline.sources.meshes.feet import without_feet
@@ -24,7 +24,6 @@ from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors,
 from pipeline.sources.meshes.rows import blocks
 from pipeline.sources.meshes.soft_shapes import level_top, lie_flat
 
-Floats = NDArray[np.float64]
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
 ROOMY = 50.0  # boards across each other: their box holds so many times what they do, and no hull of theirs is looked at
@@ -203,7 +202,7 @@ class _Hollow:
     radius: float
     depth: float
 
-    def within(self, at: Floats, normals: Floats) -> NDArray[np.bool_]:
+    def within(self, at: Floats, normals: Floats) -> Bools:
         """Return (P,) whether points (P, 3) of faces with normals (P, 3) are of its inside."""
         away = at[:, :2] - self.middle
         inside = (np.linalg.norm(away, axis=1) < self.radius) & (at[:, 2] >= self.heights[0]) & (at[:, 2] <= self.heights[1])
@@ -371,7 +370,7 @@ def _away(points: Floats, planes: Sequence[Floats], tolerance: Floats) -> float:
 
 
 @compiled
-def _worst(points: Floats, tolerance: Floats, planes: Floats, start: NDArray[np.int64]) -> float:
+def _worst(points: Floats, tolerance: Floats, planes: Floats, start: Ints) -> float:
     """See `_away`: the planes (N, 4) of piece k are from start[k] on. A quarter is not looked at closely, nor what comes after a point beyond 1."""
     worst = 0.0
     for i in range(len(points)):

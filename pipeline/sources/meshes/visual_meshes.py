@@ -4,15 +4,13 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Material, Mesh
 from pipeline.sources.guarded import DRIVE, Folder
 from pipeline.sources.meshes.obj_file import MAX_MTL, MAX_OBJ, MtlMaterial, ObjFile, ObjGroup, parse_mtl, parse_obj
 from pipeline.sources.meshes.textures import MAX_FILE, prepare_texture
 from pipeline.sources.reasons import SourceError
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(slots=True)

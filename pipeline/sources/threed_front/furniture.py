@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from pipeline.arrays import Floats
 from pipeline.entities.home import Placement
 from pipeline.sources.settings import FrontFilters
 from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest
@@ -16,8 +16,6 @@ from pipeline.sources.threed_front.house_file import FARTHEST, Child, Furniture
 from pipeline.sources.threed_front.notches import overlap_share
 from pipeline.sources.threed_front.poses import Box, Pose, place, yaw_and_tilt
 from pipeline.taxonomy import Taxonomy
-
-Floats = NDArray[np.float64]
 
 STANDING, TALL = 0.1, 1.0  # [m] a lamp whose foot is lower and that is higher hangs from no ceiling
 BELOW = 0.05  # [m] under the floor: rounding of the source
@@ -85,11 +83,7 @@ def category_of(record: Furniture, taxonomy: Taxonomy) -> str | None:
 
 
 def place_furniture(  # noqa: PLR0911 - one return per reason
-    child: Child,
-    record: Furniture,
-    models: Mapping[str, Model],
-    taxonomy: Taxonomy,
-    limits: FrontFilters,
+    child: Child, record: Furniture, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters
 ) -> Placed | tuple[str, str]:
     """Return the object, whatever room it lies in, or (reason, detail) for leaving it out."""
     if record.valid is not True:

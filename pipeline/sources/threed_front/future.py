@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline import taxonomy
+from pipeline.arrays import Floats, Ints
 from pipeline.entities.asset import Asset, Link, Mesh
 from pipeline.entities.files import load_asset, save_asset
 from pipeline.sources.densities import density
 from pipeline.sources.guarded import Folder, read_json
-from pipeline.sources.meshes.colliders import POCKET, Ints, link, solids
+from pipeline.sources.meshes.colliders import POCKET, link, solids
 from pipeline.sources.meshes.touching import touch_tolerances
 from pipeline.sources.meshes.visual_meshes import Palette, read_obj, visual
 from pipeline.sources.reasons import Row, SourceError, reject
@@ -22,7 +22,6 @@ from pipeline.sources.threed_front.furniture import mirrored_id
 from pipeline.sources.threed_front.model_hints import Hint
 from pipeline.sources.threed_front.poses import Box, to_ours
 
-Floats = NDArray[np.float64]
 Notes = list[tuple[str, str]]
 NAMES = ("category", "super-category", "style", "theme", "material")
 FLIP = np.array([-1.0, 1.0, 1.0])

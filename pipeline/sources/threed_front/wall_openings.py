@@ -12,8 +12,9 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Opening, OpeningKind
-from pipeline.sources.threed_front.opening_evidence import DOOR_HEIGHT, LEAST, SAME, Floats, OpeningEvidence
+from pipeline.sources.threed_front.opening_evidence import DOOR_HEIGHT, LEAST, SAME, OpeningEvidence
 from pipeline.sources.threed_front.reveals import bays, group_evidence
 
 DOORWAY = 1.2  # [m] floors that meet on no more than this meet under a doorway
