@@ -4,35 +4,18 @@ Everything is in the object frame (origin bottom centre of the box at rest, fron
 """
 
 import math
-from typing import Protocol
 
 import numpy as np
 
 from pipeline.arrays import Floats
-from pipeline.entities.asset import Asset, Joint, JointType, Link
+from pipeline.entities.asset import Asset, Joint, Link
 from pipeline.geometry.memo import cached_on_asset
 
 HANDLES = ("line_fixed_handle", "round_fixed_handle", "hinge_handle")  # part classes that a hand takes hold of
 OPENERS = ("hinge_door", "slider_drawer", "hinge_lid", "slider_lid")  # part classes that open something
 
 
-class Axis(Protocol):
-    """What a joint moves about or along: unit `axis` (3,) through `origin` (3,), at rest."""
-
-    @property
-    def type(self) -> JointType:
-        """Whether it turns or slides."""
-
-    @property
-    def axis(self) -> Floats:
-        """Unit direction (3,)."""
-
-    @property
-    def origin(self) -> Floats:
-        """A point (3,) on it."""
-
-
-def joint_motion(joint: Axis, position: float) -> Floats:
+def joint_motion(joint: Joint, position: float) -> Floats:
     """Return the transform (4, 4) by which `joint` alone moves its child from rest, at `position` [rad, or units of `origin`]."""
     T = np.eye(4)
     if joint.type == "prismatic":
@@ -48,6 +31,17 @@ def rotation(axis: Floats, angle: float) -> Floats:
     x, y, z = axis
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
+
+
+def points_under(motions: Floats, points: Floats) -> Floats:
+    """Return points (N, 3) under each of S maps (S, 4, 4): (S, N, 3)."""
+    return np.asarray(np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3])
+
+
+def axis_distances(joint: Joint, points: Floats) -> Floats:
+    """Return how far points (N, 3) are from the axis of a joint (N,)."""
+    away = points - joint.origin
+    return np.asarray(np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1))
 
 
 def link_transforms(asset: Asset, positions: Floats) -> Floats:
@@ -94,12 +88,10 @@ def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> Floats:
     lower, upper = joint_range(joint)
     positions = np.linspace(lower, upper, max(steps, 2))
     motions = np.stack([joint_motion(joint, q) for q in positions])
-    moved = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
+    moved = points_under(motions, points)
     corners = np.stack([moved.min((0, 1)), moved.max((0, 1))])
     if joint.type != "prismatic":
-        away = points - joint.origin
-        radius = np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1).max()
-        bulge = radius * (1.0 - math.cos((positions[1] - positions[0]) / 2)) * np.sqrt(1.0 - joint.axis**2)
+        bulge = axis_distances(joint, points).max() * (1.0 - math.cos((positions[1] - positions[0]) / 2)) * np.sqrt(1.0 - joint.axis**2)
         corners += np.stack([-bulge, bulge])
     return corners
 
@@ -125,9 +117,7 @@ def handle_point(asset: Asset, joint_index: int) -> Floats:
         middle = _middle(points)
         ahead = float(((points - middle) @ joint.axis).max())
         return middle + joint.axis * ahead
-    away = points - joint.origin
-    radial = away - np.outer(away @ joint.axis, joint.axis)
-    radius = np.linalg.norm(radial, axis=1)
+    radius = axis_distances(joint, points)
     return np.asarray(points[radius > 0.98 * radius.max()].mean(0))
 
 

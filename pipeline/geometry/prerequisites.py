@@ -43,7 +43,11 @@ def waiting(asset: Asset) -> list[tuple[int, ...]]:
         sweep: Prisms | None = None
         for i, other in enumerate(joints):
             related = i == k or other.child in moved[k] or joint.child in moved[i]
-            if related or other.part_class not in OPENERS or not _overlap(way, rest[i]):
+            if (
+                related
+                or other.part_class not in OPENERS
+                or not (np.minimum(way[1], rest[i][1]) - np.maximum(way[0], rest[i][0]) > TOUCH).all()
+            ):
                 continue
             sweep = sweep if sweep is not None else sweep_of(asset, k).prisms
             at_rest, opened = (_links(asset, moved[i], joint_motion(other, q)) for q in (0.0, joint_range(other)[1]))
@@ -69,7 +73,3 @@ def _meet(a: Prisms, b: Prisms) -> bool:
 
 def _box(points: Floats) -> Floats:
     return np.stack([points.min(0), points.max(0)]) if len(points) else np.array([[np.inf] * 3, [-np.inf] * 3])
-
-
-def _overlap(a: Floats, b: Floats) -> bool:
-    return bool(np.all(np.minimum(a[1], b[1]) - np.maximum(a[0], b[0]) > TOUCH))

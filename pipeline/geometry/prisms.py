@@ -17,7 +17,7 @@ from pipeline.arrays import Floats, Ints
 from pipeline.entities.asset import Asset, Joint, Link
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.convex import hull
-from pipeline.geometry.kinematics import joint_motion, joint_range, moved_links
+from pipeline.geometry.kinematics import axis_distances, joint_motion, joint_range, moved_links, points_under
 from pipeline.geometry.memo import cached_on_asset
 
 CORNERS = 12  # vertices kept per prism; rounder ones are covered by a polygon of that many sides
@@ -105,12 +105,7 @@ def join_prisms(groups: list[Prisms]) -> Prisms:
     """Join groups of prisms into one."""
     if not groups:
         return Prisms(np.zeros((0, CORNERS, 2)), np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64))
-    return Prisms(
-        np.concatenate([g.corners for g in groups]),
-        np.concatenate([g.count for g in groups]),
-        np.concatenate([g.z for g in groups]),
-        np.concatenate([g.part for g in groups]),
-    )
+    return Prisms(*map(np.concatenate, zip(*((g.corners, g.count, g.z, g.part) for g in groups), strict=True)))
 
 
 def prism(points: Floats, part: int = 0) -> Prisms | None:
@@ -183,16 +178,11 @@ def sweep_of(asset: Asset, index: int, margin: float = 0.0) -> Sweep:
         motions = np.stack([joint_motion(joint, float(q)) for q in positions])
         tangents = None if joint.type == "prismatic" else _tangents(joint, positions)
         for points in pieces:
-            moved = _moved(motions, points)
-            between = [] if tangents is None else [_moved(tangents, points)]
+            moved = points_under(motions, points)
+            between = [] if tangents is None else [points_under(tangents, points)]
             groups.append(covering(np.concatenate([moved[:-1], moved[1:], *between], axis=1), len(reached), margin))
         reached += positions[1:].tolist()
     return Sweep(join_prisms(groups), np.array(reached))
-
-
-def _moved(motions: Floats, points: Floats) -> Floats:
-    """Return points (N, 3) under each of S maps: (S, N, 3)."""
-    return np.asarray(np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3])
 
 
 def _tangents(joint: Joint, positions: Floats) -> Floats:
@@ -207,8 +197,7 @@ def _tangents(joint: Joint, positions: Floats) -> Floats:
 def _steps(joint: Joint, limit: float, pieces: list[Floats]) -> int:
     if joint.type == "prismatic" or not pieces:
         return STEPS
-    away = np.concatenate(pieces) - joint.origin
-    radius = float(np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1).max())
+    radius = float(axis_distances(joint, np.concatenate(pieces)).max())
     step = 2 * math.acos(max(0.0, 1.0 - BULGE / max(radius, BULGE)))
     return min(MOST_STEPS, max(STEPS, math.ceil(abs(limit) / max(step, 1e-6))))
 

@@ -29,20 +29,9 @@ def stand_pose(
     distances, turns = _search_grid(robot.reach, robot.cone)
     low = np.flatnonzero(swept.z[:, 0] < robot.band(floor)[1])
     raster = space.floor.raster
-    x, y, found = _search(
-        float(grip[0]),
-        float(grip[1]),
-        math.atan2(float(heading[1]), float(heading[0])),
-        distances,
-        turns,
-        space.labels,
-        label,
-        raster.origin,
-        raster.cell,
-        np.ascontiguousarray(swept.corners[low]),
-        swept.count[low],
-        robot.radius,
-    )
+    corners, count = np.ascontiguousarray(swept.corners[low]), swept.count[low]
+    x, y, angle = float(grip[0]), float(grip[1]), math.atan2(float(heading[1]), float(heading[0]))
+    x, y, found = _search(x, y, angle, distances, turns, space.labels, label, raster.origin, raster.cell, corners, count, robot.radius)
     return (x, y) if found else None
 
 

@@ -1,5 +1,7 @@
 """Convex tilings and covers of plan polygons: rectangles where all edges are axis-parallel, merged triangles elsewhere."""
 
+import itertools
+
 import numpy as np
 import shapely
 from shapely.geometry import MultiPolygon, Polygon
@@ -11,18 +13,12 @@ GRID = 1e-5  # coordinates closer than this are one [m]; poses and plans are rou
 
 def convex_pieces(region: Polygon | MultiPolygon) -> list[Floats]:
     """Tile `region` [m] with convex polygons (n, 2), counter-clockwise, that meet at their edges only."""
-    pieces: list[Floats] = []
-    for part in polygons(region):
-        pieces.extend(_rectangles(part) if _rectilinear(part) else _merged_triangles(part))
-    return pieces
+    return [piece for part in polygons(region) for piece in (_rectangles(part) if _rectilinear(part) else _merged_triangles(part))]
 
 
 def convex_cover(region: Polygon | MultiPolygon) -> list[Floats]:
     """Return convex polygons (n, 2), counter-clockwise, whose union is `region` [m]: fewer than tile it, for they may overlap."""
-    pieces: list[Floats] = []
-    for part in polygons(region):
-        pieces.extend(_cover(part) if _rectilinear(part) else _merged_triangles(part))
-    return pieces
+    return [piece for part in polygons(region) for piece in (_cover(part) if _rectilinear(part) else _merged_triangles(part))]
 
 
 def polygons(region: shapely.Geometry) -> list[Polygon]:
@@ -107,20 +103,13 @@ def _merged_triangles(part: Polygon) -> list[Floats]:
     """Tile any polygon: constrained Delaunay triangles, merged while the union stays convex (Hertel and Mehlhorn 1983)."""
     triangles = polygons(shapely.constrained_delaunay_triangles(part))
     pieces = [np.asarray(shapely.geometry.polygon.orient(t).exterior.coords)[:-1] for t in triangles]
-    merged = True
-    while merged:
-        merged = False
-        for i in range(len(pieces)):
-            for j in range(i + 1, len(pieces)):
-                union = _merge(pieces[i], pieces[j])
-                if union is not None:
-                    pieces[i] = union
-                    del pieces[j]
-                    merged = True
-                    break
-            if merged:
-                break
-    return pieces
+    while True:
+        pairs = itertools.combinations(range(len(pieces)), 2)
+        merged = next(((i, j, union) for i, j in pairs if (union := _merge(pieces[i], pieces[j])) is not None), None)
+        if merged is None:
+            return pieces
+        i, j, pieces[i] = merged
+        del pieces[j]
 
 
 def _merge(a: Floats, b: Floats) -> Floats | None:

@@ -130,21 +130,15 @@ def shell(plan: Plan, level: int) -> Shell:
             prisms.append(Prism("lintel", cut.quad, cut.top, top, cut.opening.opening_id))
         if cut.bottom > 1e-3:
             prisms.append(Prism("sill", cut.quad, 0.0, cut.bottom, cut.opening.opening_id))
-    leaves = tuple(leaf for cut in cuts if (leaf := _leaf(cut, inner)) is not None)
+    leaves = tuple(leaf for cut in cuts if (leaf := _leaf(cut, inner)))
     return Shell(height, top, outline, region, cuts, tuple(prisms), leaves, steps(plan, level))
 
 
 @functools.lru_cache(64)
 def leaves(plan: Plan) -> tuple[Leaf, ...]:
     """Return the door leaves of all storeys, in the order of the openings, without building walls."""
-    doors = []
-    for opening in plan.openings:
-        if opening.swing is not None:
-            inner = {room.room_id: Polygon(room.polygon) for room in plan.rooms if room.room_id in opening.rooms}
-            leaf = _leaf(_cut(opening, inner, plan), inner)
-            if leaf is not None:
-                doors.append(leaf)
-    return tuple(doors)
+    swung = [(o, {r.room_id: Polygon(r.polygon) for r in plan.rooms if r.room_id in o.rooms}) for o in plan.openings if o.swing]
+    return tuple(leaf for o, inner in swung if (leaf := _leaf(_cut(o, inner, plan), inner)))
 
 
 def room_panels(room: Room, cuts: tuple[Cut, ...], height: float = 0.0) -> list[Panel]:
@@ -227,20 +221,8 @@ def _leaf(cut: Cut, inner: dict[str, Polygon]) -> Leaf | None:
     turn = 1 if along[0] * normal[1] - along[1] * normal[0] > 0 else -1
     right, left = (float(np.linalg.norm(cut.quad[k] - opening.segment[0])) for k in (0, 3))
     front, back = (left, right) if side > 0 else (right, left)
-    return Leaf(
-        opening.opening_id,
-        hinge,
-        along,
-        normal,
-        turn,
-        swing.angle,
-        opening.width - 2 * LEAF_GAP,
-        cut.bottom + LEAF_GAP,
-        cut.top - LEAF_GAP,
-        front,
-        back,
-        opening.width,
-    )
+    width, bottom, top = opening.width - 2 * LEAF_GAP, cut.bottom + LEAF_GAP, cut.top - LEAF_GAP
+    return Leaf(opening.opening_id, hinge, along, normal, turn, swing.angle, width, bottom, top, front, back, opening.width)
 
 
 def _ring_panels(owner: str, ring: Floats, cuts: tuple[Cut, ...], height: float) -> list[Panel]:

@@ -206,7 +206,7 @@ def test_part_boxes_are_read_back_as_the_corpus_wrote_them(tmp_path):
             X, Y, Z = np.array(entry["bbox"]).T
             assert np.allclose(box_corners(part.centre, part.axes, part.size), np.stack([-Y, X, Z], axis=1), atol=1e-6)
             assert np.linalg.det(part.axes) == pytest.approx(1)
-            points = shape.bodies[part.body].points()
+            points = shape.bodies[part.link].points()
             assert (part.centre >= points.min(axis=0) - 1e-3).all()
             assert (part.centre <= points.max(axis=0) + 1e-3).all()
             count += 1

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from pipeline import taxonomy
-from pipeline.sources.meshes.feet import without_feet
 from pipeline.sources.meshes.mesh_solids import convex, outside
 from pipeline.sources.meshes.near_boxes import CORNERS
+from pipeline.sources.meshes.small_parts import without_feet
 from pipeline.sources.meshes.touching import FELT, Felt, felt_of, fewer, simpler, touch_tolerances
 
 

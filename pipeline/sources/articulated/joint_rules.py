@@ -13,6 +13,7 @@ from pipeline.sources.articulated.mobility_v2 import Mobility
 from pipeline.sources.articulated.part_classes import words_of
 from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, apply, span_of
 from pipeline.sources.articulated.urdf import UrdfJoint
+from pipeline.sources.meshes.mesh_solids import even_directions
 
 TURNS = 4 * math.pi  # [rad] a range beyond this is no limit
 SMALLEST = {"revolute": 1e-3, "prismatic": 1e-4}  # ranges [rad, units] below which nothing moves
@@ -29,12 +30,9 @@ Limits = tuple[JointType, float, float]
 
 def _directions(count: int) -> Floats:
     """Return unit vectors (count + 26, 3): evenly spread, and those towards the faces, edges and corners of a cube."""
-    k = np.arange(count) + 0.5
-    polar, turn = np.arccos(1 - 2 * k / count), np.pi * (1 + 5**0.5) * k
-    even = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
     cube = np.stack(np.meshgrid(*[(-1.0, 0.0, 1.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     cube = cube[np.abs(cube).sum(axis=1) > 0]
-    return np.concatenate([even, cube / np.linalg.norm(cube, axis=1)[:, None]])
+    return np.concatenate([even_directions(count), cube / np.linalg.norm(cube, axis=1)[:, None]])
 
 
 DIRECTIONS = _directions(100)

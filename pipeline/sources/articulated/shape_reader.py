@@ -9,12 +9,11 @@ from pathlib import PurePosixPath
 import numpy as np
 
 from pipeline.arrays import Floats
-from pipeline.entities.asset import Mesh
+from pipeline.entities.asset import Mesh, PartBox
 from pipeline.sources.articulated import joint_rules
 from pipeline.sources.articulated.mesh_files import MeshFiles
 from pipeline.sources.articulated.mobility_v2 import Mobility
-from pipeline.sources.articulated.part_boxes import annotated_part
-from pipeline.sources.articulated.part_classes import Annotation, fixed_class, named_class
+from pipeline.sources.articulated.part_classes import Annotation, box_of, fixed_class, named_class
 from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, span_of
 from pipeline.sources.articulated.urdf import Shape, Urdf, UrdfLink
 from pipeline.sources.guarded import Folder
@@ -69,7 +68,7 @@ class ShapeReader:
         shape.joints = [replace(j, parent=index[j.parent], child=index[j.child]) for j in shape.joints]
         self._ensure_base(shape)
         shape.parts = [
-            annotated_part(index[body_of[name]], note.part_class, note.corners @ self.frame.T)
+            PartBox(index[body_of[name]], note.part_class, *box_of(note.corners @ self.frame.T), annotated=True)
             for name, note in self.hints.annotated.items()
             if note.corners is not None and body_of.get(name) in index
         ]
@@ -105,7 +104,8 @@ class ShapeReader:
             body_of[joint.child] = child = len(bodies)
             part, inferred = self._part_class(joint.child, kind)
             axis, origin = T[joint.child][:3, :3] @ joint.axis, T[joint.child][:3, 3].copy()
-            joints.append(ShapeJoint(joint.name, kind, body_of[joint.parent], child, axis, origin, lower, upper, part, inferred))
+            ends = body_of[joint.parent], child
+            joints.append(ShapeJoint(joint.name, kind, *ends, axis, origin, lower, upper, part, inferred=inferred))
             bodies.append(ShapeBody(slug(joint.child)))
         return body_of, bodies, joints
 

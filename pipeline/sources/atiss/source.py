@@ -27,8 +27,8 @@ from pipeline.sources.threed_front.floors import outline
 from pipeline.sources.threed_front.furniture import Model, Placed
 from pipeline.sources.threed_front.house import rows_of
 from pipeline.sources.threed_front.house_file import NO_TURN, ONE, Child, HouseFile, RoomRecord
+from pipeline.sources.threed_front.house_rows import ReadRoom
 from pipeline.sources.threed_front.poses import Pose, to_ours
-from pipeline.sources.threed_front.rows import ReadRoom
 
 House = tuple[str, tuple[tuple[Kind, str], ...]]  # its id; of each room its kind, and its file relative to the source
 

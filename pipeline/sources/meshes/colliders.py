@@ -130,7 +130,8 @@ def link(
     if how.sides <= TOUCHED:
         seen = [m.vertices[m.faces].astype(np.float64) for m in visuals if not m.part]
         boxes = [(stand_midway(hull, np.concatenate(seen)), faces) for hull, faces in boxes] if seen else boxes
-    colliders = tuple(_piece(k, *with_few_sides(*box, how.sides)) for k, box in enumerate(boxes))
+    hulls = enumerate(with_few_sides(*box, how.sides) for box in boxes)
+    colliders = tuple(Mesh(f"piece_{k:03d}", hull.astype(np.float32), faces.astype(np.int32)) for k, (hull, faces) in hulls)
     return Link(name, visuals, colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
 
 
@@ -144,7 +145,3 @@ def _hollow_out(part: Part, kind: str) -> Part:
     if kind not in BOXES or np.ptp(part.hull, axis=0).min() <= HOLLOW:
         return part
     return replace(part, volume=min(part.volume, part.area * BOARD))
-
-
-def _piece(number: int, hull: Floats, faces: Ints) -> Mesh:
-    return Mesh(f"piece_{number:03d}", hull.astype(np.float32), faces.astype(np.int32))

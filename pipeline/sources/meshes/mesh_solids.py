@@ -119,8 +119,9 @@ def components(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
 def _weld_vertices(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
     """Return the mesh with vertices at the same place made one, without the faces that this makes degenerate."""
     span = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
-    grid = np.round((points - points.min(axis=0)) / (span * WELD)).astype(np.int64)
-    _, first, label = np.unique(_hash(grid), return_index=True, return_inverse=True)
+    # at most 2^20 cells a side: three fit in 63 bits
+    x, y, z = np.minimum(np.round((points - points.min(axis=0)) / (span * WELD)).astype(np.int64), (1 << 20) - 1).T
+    _, first, label = np.unique((x << 40) | (y << 20) | z, return_index=True, return_inverse=True)
     faces = label[faces]
     proper = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     return points[first], faces[proper]
@@ -191,12 +192,6 @@ def _labels(a: Ints, b: Ints, count: int) -> Ints:
     """Return a label for each of `count` things, of which a (N,) and b (N,) are connected."""
     graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(count, count))
     return np.asarray(connected_components(graph, directed=False)[1])
-
-
-def _hash(grid: Ints) -> Ints:
-    """Return one number per grid cell; the grid has at most 2^20 cells a side, so three fit in 63 bits."""
-    low = np.minimum(grid, (1 << 20) - 1)
-    return (low[:, 0] << 40) | (low[:, 1] << 20) | low[:, 2]
 
 
 def _part(points: Floats, faces: Ints) -> Part | None:
@@ -310,12 +305,16 @@ def outside(points: Floats, planes: Floats) -> Floats:
     return np.asarray((points @ planes[:, :3].T + planes[:, 3]).max(axis=1))
 
 
+def even_directions(count: int) -> Floats:
+    """Return unit vectors (count, 3), evenly spread along a spiral."""
+    k = np.arange(count) + 0.5
+    polar, turn = np.arccos(1 - 2 * k / count), np.pi * (1 + 5**0.5) * k
+    return np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
+
+
 def extremes(points: Floats, most: int = MAX_HULL) -> Floats:
     """Return at most so many of the points: those furthest along the axes and along evenly spread directions, then what their hull leaves out furthest."""
-    k = np.arange(most - 6) + 0.5
-    polar, turn = np.arccos(1 - 2 * k / (most - 6)), np.pi * (1 + 5**0.5) * k
-    directions = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
-    directions = np.concatenate([np.eye(3), -np.eye(3), directions])
+    directions = np.concatenate([np.eye(3), -np.eye(3), even_directions(most - 6)])
     chosen = np.unique(np.argmax(points @ directions.T, axis=0))
     while len(chosen) < most:
         further = _left_out(points, chosen)[: most - len(chosen)]

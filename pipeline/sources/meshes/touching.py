@@ -15,13 +15,11 @@ from scipy.spatial import ConvexHull
 from pipeline.arrays import Bools, Floats, Ints
 from pipeline.card import Category
 from pipeline.geometry.compiled import compiled
-from pipeline.sources.meshes.feet import without_feet
-from pipeline.sources.meshes.legs import LOW, UNDER, blocks_under, legs_under, narrow_bars
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, extremes, qhull_of
 from pipeline.sources.meshes.near_boxes import NEAR
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors, with_floor
-from pipeline.sources.meshes.rows import blocks
+from pipeline.sources.meshes.small_parts import LOW, UNDER, blocks_under, legs_under, narrow_bars, rows_as_blocks, without_feet
 from pipeline.sources.meshes.soft_shapes import level_top, lie_flat
 
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
@@ -130,7 +128,7 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
     if how.sides <= TOUCHED:
         pieces = without_feet(pieces)
     elif how.up <= TOUCHED:
-        pieces = blocks(pieces)
+        pieces = rows_as_blocks(pieces)
     allowed = _tolerance(pieces, how)
     fewer_pieces = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT, sag=how.sag), allowed)
     if how.vessel:

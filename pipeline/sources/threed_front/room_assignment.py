@@ -13,7 +13,7 @@ from pipeline.sources.source import Task
 from pipeline.sources.threed_front.clearing import clear
 from pipeline.sources.threed_front.furniture import Placed, inside, overlapping, place_furniture
 from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord
-from pipeline.sources.threed_front.rows import ReadRoom
+from pipeline.sources.threed_front.house_rows import ReadRoom
 from pipeline.sources.threed_front.supports import floating, supports
 
 MAX_OBJECTS = 500  # of one room

@@ -8,12 +8,9 @@ import shapely
 from pipeline.sources.threed_front.furniture import Placed
 from pipeline.taxonomy import Taxonomy
 
-ON = 0.03
-"""What starts within this height of another's top stands on it [m]."""
-RAISED = 0.003
-"""What starts no higher than this stands on the floor [m]."""
-LEAST = 0.7
-"""Share of a thing's footprint that must be over its support's."""
+ON = 0.03  # [m] what starts within this height of another's top stands on it
+RAISED = 0.003  # [m] what starts no higher stands on the floor
+LEAST = 0.7  # share of a thing's footprint that must be over its support's
 
 
 def supports(objects: Sequence[Placed], taxonomy: Taxonomy) -> list[int]:
