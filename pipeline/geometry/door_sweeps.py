@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from pipeline.arrays import Floats
-from pipeline.geometry.prisms import BULGE, MARGIN, STEPS, Prisms, Sweep, covering, join_prisms
+from pipeline.geometry.prisms import BULGE, MARGIN, STEPS, Prisms, Sweep, covering_prisms, join_prisms
 from pipeline.geometry.walls import LEAF_THICKNESS, Leaf
 
 ROOM = 0.01  # [m] about the leaf and its levers: what stands in a room need not stand nearer to its door, as units of a kitchen do to each other
@@ -23,12 +23,12 @@ def leaf_sweep(leaf: Leaf, elevation: float) -> Sweep:
     step = 2 * math.acos(1.0 - BULGE / leaf.width)
     angles = np.linspace(0.0, leaf.angle, max(STEPS, math.ceil(leaf.angle / step)) + 1)
     posed = [_posed(leaf, elevation, angles, piece) for piece in _pieces(leaf)]
-    return Sweep(join_prisms([covering(np.concatenate([p[:-1], p[1:]], axis=1), margin=ROOM) for p in posed]), angles[1:])
+    return Sweep(join_prisms([covering_prisms(np.concatenate([p[:-1], p[1:]], axis=1), margin=ROOM) for p in posed]), angles[1:])
 
 
 def shut_leaf(leaf: Leaf, elevation: float) -> Prisms:
     """Return what a closed leaf and its levers take, and MARGIN about it: on both sides of the wall a drawer comes out before them."""
-    return join_prisms([covering(_posed(leaf, elevation, np.zeros(1), piece), margin=MARGIN) for piece in _pieces(leaf)])
+    return join_prisms([covering_prisms(_posed(leaf, elevation, np.zeros(1), piece), margin=MARGIN) for piece in _pieces(leaf)])
 
 
 def leaf_handles(leaf: Leaf) -> Floats:

@@ -91,7 +91,7 @@ def fill_all(mask: Mask, corners: Floats, count: Ints, which: Ints, origin: Floa
 
 
 @compiled
-def standing(free: Mask, radius_cells: float) -> Mask:
+def standing_cells(free: Mask, radius_cells: float) -> Mask:
     """Return the cells at which the centre of a disc of that radius can stand: all of it is free floor.
 
     No blocked cell, nor one beyond the raster, has its centre nearer than the radius and half a cell.

@@ -21,7 +21,7 @@ def with_prerequisites(asset: Asset) -> Asset:
     A joint waits for a door, drawer or lid whose parts lie in its way at rest, and do so no more once that is open. Parts
     that are in each other at rest tell nothing, nor do two that would wait for each other.
     """
-    waits = waiting(asset)
+    waits = find_prerequisites(asset)
     if not any(waits):
         return asset
     joints = asset.joints
@@ -29,7 +29,7 @@ def with_prerequisites(asset: Asset) -> Asset:
     return replace(asset, joints=named)
 
 
-def waiting(asset: Asset) -> list[tuple[int, ...]]:
+def find_prerequisites(asset: Asset) -> list[tuple[int, ...]]:
     """Return for each joint of an asset the indices of the joints that it waits for."""
     joints = asset.joints
     moved = [moved_links(asset, k) for k in range(len(joints))]

@@ -110,11 +110,11 @@ def join_prisms(groups: list[Prisms]) -> Prisms:
 
 def prism(points: Floats, part: int = 0) -> Prisms | None:
     """Return the one prism that covers points (N, 3), or None when their projection is degenerate."""
-    cover = covering(np.asarray(points, np.float64)[None], part)
+    cover = covering_prisms(np.asarray(points, np.float64)[None], part)
     return cover if len(cover) else None
 
 
-def covering(points: Floats, first: int = 0, margin: float = 0.0) -> Prisms:
+def covering_prisms(points: Floats, first: int = 0, margin: float = 0.0) -> Prisms:
     """Return the prisms that cover sets of points (S, N, 3), parts `first` and following; none where a projection is degenerate.
 
     They reach `margin` [m] farther in plan, along both axes; not in height, for what moves lies between boards and on desks.
@@ -180,7 +180,7 @@ def sweep_of(asset: Asset, index: int, margin: float = 0.0) -> Sweep:
         for points in pieces:
             moved = points_under(motions, points)
             between = [] if tangents is None else [points_under(tangents, points)]
-            groups.append(covering(np.concatenate([moved[:-1], moved[1:], *between], axis=1), len(reached), margin))
+            groups.append(covering_prisms(np.concatenate([moved[:-1], moved[1:], *between], axis=1), len(reached), margin))
         reached += positions[1:].tolist()
     return Sweep(join_prisms(groups), np.array(reached))
 

@@ -62,7 +62,7 @@ def unit_factor(extent: Floats, declared: Floats | None, category: str | None) -
     return 100.0 if ratio < 1 / OTHER_UNIT else 1.0
 
 
-def likeliest(size: Floats, categories: Iterable[str]) -> str | None:
+def likeliest_category(size: Floats, categories: Iterable[str]) -> str | None:
     """Return the category whose size distribution makes `size` (w, d, h) [m] most likely, None where there is none."""
 
     def cost(category: str) -> tuple[float, str]:

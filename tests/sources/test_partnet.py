@@ -304,10 +304,10 @@ def test_signs_tell_a_nightstand_from_a_kitchen_unit():
     extent = np.array([0.55, 0.45, 0.58])
     small = Signs({"leaf_width": (), "drawer_height": (0.2, 0.2), "handle_length": (0.12,), "board": (0.018,)}, 0, 2, False, 0.7, None)
     fits = [metric_scale.fit(extent, c, small) for c in ("nightstand", "kitchen_cabinet")]
-    assert metric_scale.best(fits, rms=9, keep=2, margin=99)[0].category == "nightstand"
+    assert metric_scale.best_fits(fits, rms=9, keep=2, margin=99)[0].category == "nightstand"
     large = Signs({"leaf_width": (0.27,), "drawer_height": (0.1,), "handle_length": (0.09,), "board": (0.011,)}, 2, 1, False, 0.95, 0.4)
     fits = [metric_scale.fit(extent, c, large) for c in ("nightstand", "kitchen_cabinet")]
-    assert metric_scale.best(fits, rms=9, keep=2, margin=99)[0].category == "kitchen_cabinet"
+    assert metric_scale.best_fits(fits, rms=9, keep=2, margin=99)[0].category == "kitchen_cabinet"
 
 
 def test_ids_that_collide_once_they_are_plain(tmp_path):
@@ -336,7 +336,7 @@ def test_metric_scale_recovers_a_mean_object(category):
     fit = metric_scale.fit(mean / 3.7, category)
     assert np.allclose(mean / 3.7 * fit.scale, mean, rtol=0.15)
     assert fit.rms < 1
-    assert metric_scale.best([metric_scale.fit(np.array([1.0, 0.001, 30.0]), category)], rms=2.5, keep=3, margin=2.0) == ()
+    assert metric_scale.best_fits([metric_scale.fit(np.array([1.0, 0.001, 30.0]), category)], rms=2.5, keep=3, margin=2.0) == ()
 
 
 def test_nested_folders_are_found(tmp_path):

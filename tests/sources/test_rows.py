@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from pipeline import taxonomy
-from pipeline.sources.meshes.mesh_solids import convex
+from pipeline.sources.meshes.mesh_solids import convex_part
 from pipeline.sources.meshes.near_boxes import CORNERS
 from pipeline.sources.meshes.small_parts import rows_as_blocks
-from pipeline.sources.meshes.touching import ANY, OVER, simpler, touch_tolerances
+from pipeline.sources.meshes.touching import ANY, OVER, simplify_pieces, touch_tolerances
 
 
 def block(low, high):
-    return convex(np.array(low) + CORNERS * (np.array(high, float) - np.array(low)), 1.0)
+    return convex_part(np.array(low) + CORNERS * (np.array(high, float) - np.array(low)), 1.0)
 
 
 def bottle(x, y=0.0, z=0.0, size=(0.06, 0.25, 0.06)):
@@ -45,6 +45,8 @@ def test_nothing_is_felt_above_what_a_robot_comes_to():
     assert (how.over, touch_tolerances(taxonomy.load().categories["wall_cabinet"], opens=False).over) == (OVER, ANY)
     sides = [bottle(x, size=(0.02, 0.6, 2.15)) for x in (0.0, 1.0)]
     shelf, top = bottle(0.02, z=1.5, size=(0.98, 0.6, 0.02)), bottle(0.0, z=2.15, size=(1.02, 0.6, 0.03))
-    assert len(simpler([*sides, shelf, top], how)) == 3
+    assert len(simplify_pieces([*sides, shelf, top], how)) == 3
     lower = [bottle(x, size=(0.02, 0.6, 1.55)) for x in (0.0, 1.0)]
-    assert len(simpler([*lower, bottle(0.02, z=0.9, size=(0.98, 0.6, 0.02)), bottle(0.0, z=1.55, size=(1.02, 0.6, 0.03))], how)) == 4
+    assert (
+        len(simplify_pieces([*lower, bottle(0.02, z=0.9, size=(0.98, 0.6, 0.02)), bottle(0.0, z=1.55, size=(1.02, 0.6, 0.03))], how)) == 4
+    )

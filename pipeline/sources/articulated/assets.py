@@ -14,7 +14,7 @@ from pipeline.sources.articulated.metric_scale import Fit, Proportions
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint
 from pipeline.sources.articulated.shape_reader import distinct_names
 from pipeline.sources.densities import density
-from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
+from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, build_link, matter_volume, solids
 from pipeline.sources.meshes.inertials import Inertial, combine_inertials, inertia_flaw, mass_flaw
 from pipeline.sources.meshes.small_parts import LOW, UNDER
 from pipeline.sources.meshes.touching import ANY, BUMPED, LEFT_ALONE, OVER, SAG, touch_tolerances
@@ -65,7 +65,7 @@ def assets(
             stated, note = _stated_inertial(body, real, middle, fit, kind)
             weighed += note
             visuals = [replace(m, vertices=((m.vertices - middle) * fit.scale).astype(np.float32)) for m in body.visuals]
-            links.append(link(body.name, visuals, real, density(kind, "", fit.category), kind, stated, felt.get(k, how)))
+            links.append(build_link(body.name, visuals, real, density(kind, "", fit.category), kind, stated, felt.get(k, how)))
         shown = links if category.loose else without_hidden(links, shape.joints)
         asset = Asset(
             f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),

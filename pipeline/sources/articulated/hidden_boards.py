@@ -12,7 +12,7 @@ from scipy.spatial import ConvexHull
 from pipeline.arrays import Floats
 from pipeline.entities.asset import Link
 from pipeline.sources.articulated.shape import ShapeJoint
-from pipeline.sources.meshes.mesh_solids import outside
+from pipeline.sources.meshes.mesh_solids import distances_outside
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.touching import LEFT_ALONE, TOUCHED, UP, spread
 
@@ -43,7 +43,7 @@ def without_covered(base: Link, drawers: Sequence[Link]) -> Link:
         felt = comes(at + OFF * normals)
         at, normals = at[felt], normals[felt]
         allowed = np.where(normals[:, 2] > UP, TOUCHED, np.where(normals[:, 2] < -UP, LEFT_ALONE, BESIDE))
-        if (np.min([outside(at, planes[i]) for i in kept - {k}], axis=0) <= allowed).all():
+        if (np.min([distances_outside(at, planes[i]) for i in kept - {k}], axis=0) <= allowed).all():
             kept.discard(k)
     return replace(base, colliders=tuple(base.colliders[k] for k in boards if k in kept))
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from pipeline.arrays import Floats
 from pipeline.entities.asset import PART_CLASSES
-from pipeline.sources.guarded import MIB, Folder, finite, read_json
+from pipeline.sources.guarded import MIB, Folder, finite_array, read_json
 from pipeline.sources.reasons import SourceError
 
 ANNOTATION = "link_annotation_gapartnet.json"
@@ -73,7 +73,7 @@ def _corners(value: Any) -> Floats | None:
 
     The order, in the part's own axes: (-,+,+) (+,+,+) (+,-,+) (-,-,+) and the same four with z -.
     """
-    corners = finite(value, 8, 3)
+    corners = finite_array(value, 8, 3)
     if corners is None:
         return None
     centre, axes, size = box_of(corners)

@@ -80,7 +80,7 @@ def orient_shape(shape: ArticulatedShape, categories: Sequence[str]) -> Articula
     for up in (2, 1):
         turned = shape.turned(UPRIGHT[up])
         turned = turned.turned(_about(_heading(turned)))
-        scores = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.metric(turned.extent, c, None, unit))]
+        scores = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.fit_metric(turned.extent, c, None, unit))]
         tried.append((_level(turned) + (0.5 if up == 2 else 0.0) + 0.2 * max(scores, default=-20.0), turned))
     return complete_shape(max(tried, key=lambda t: t[0])[1])
 

@@ -19,7 +19,7 @@ from pipeline.sources.articulated.urdf import Shape, Urdf, UrdfLink
 from pipeline.sources.guarded import Folder
 from pipeline.sources.meshes.near_boxes import FACES
 from pipeline.sources.meshes.obj_file import MtlMaterial, ObjFile, ObjGroup
-from pipeline.sources.meshes.visual_meshes import Palette, visual
+from pipeline.sources.meshes.visual_meshes import Palette, visual_mesh
 from pipeline.sources.reasons import SourceError
 
 LIKE = 0.03  # share of the object's diagonal within which the boxes of two sets of meshes of a body agree
@@ -122,7 +122,7 @@ class ShapeReader:
             extent = np.ptp(points[group.faces.ravel()], axis=0)
             part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=link.name in self.moving)
             material = self._material(shape, file, group)
-            mesh = visual(group, file, points, f"mesh_{start + len(meshes):03d}", material, part)
+            mesh = visual_mesh(group, file, points, f"mesh_{start + len(meshes):03d}", material, part)
             if mesh:
                 meshes.append(mesh)
         return meshes

@@ -13,11 +13,11 @@ from pipeline.sources.densities import BOARD, BOXES, HOLLOW, MINIMUM
 from pipeline.sources.meshes.cutting import cut
 from pipeline.sources.meshes.inertials import Inertial
 from pipeline.sources.meshes.merging import merge_pieces
-from pipeline.sources.meshes.mesh_solids import Part, convex, mass_properties, parts_with_meshes
+from pipeline.sources.meshes.mesh_solids import Part, convex_part, mass_properties, parts_with_meshes
 from pipeline.sources.meshes.near_boxes import simplify_to_box
 from pipeline.sources.meshes.recesses import stand_midway
 from pipeline.sources.meshes.sides import with_few_sides
-from pipeline.sources.meshes.touching import TOUCHED, Felt, simpler
+from pipeline.sources.meshes.touching import TOUCHED, TouchTolerances, simplify_pieces
 from pipeline.sources.settings import ModelLimits
 
 Dissected = tuple[Part, Floats, Ints]
@@ -83,7 +83,7 @@ def _cuts(bodies: Sequence[Sequence[Dissected]], limits: ModelLimits, tolerance:
             cuts[body, k] = [part]
             continue
         pieces = cut(points, triangles, tolerance, min(PIECES, left)).pieces
-        cuts[body, k] = [part] if len(pieces) == 1 else [p for piece in pieces if (p := convex(piece, part.volume / len(pieces)))]
+        cuts[body, k] = [part] if len(pieces) == 1 else [p for piece in pieces if (p := convex_part(piece, part.volume / len(pieces)))]
         left = max(left - len(pieces), 1)
     return cuts
 
@@ -101,14 +101,14 @@ def _solids(name: str, dissection: Sequence[Dissected], cuts: Mapping[int, list[
     return Solids(tuple(part for part, _, _ in dissection), tuple(pieces), tuple(notes))
 
 
-def link(
+def build_link(
     name: str,
     visuals: Iterable[Mesh],
     matter: Solids,
     density: float,
     kind: str = "",
     stated: Inertial | float | None = None,
-    how: Felt | None = None,
+    how: TouchTolerances | None = None,
 ) -> Link:
     """Return the link [m, kg] of visual meshes and solids; `kind` is the super-category, `how` truly it is felt.
 
@@ -123,8 +123,8 @@ def link(
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
-    how, visuals = how or Felt(), tuple(visuals)
-    pieces = simpler(matter.pieces, how)
+    how, visuals = how or TouchTolerances(), tuple(visuals)
+    pieces = simplify_pieces(matter.pieces, how)
     floor = min((float(p.hull[:, 2].min()) for p in pieces), default=0.0)
     boxes = [simplify_to_box(p.hull, p.faces, how.box, floor) for p in pieces]
     if how.sides <= TOUCHED:

@@ -75,7 +75,7 @@ def combine_parts(pieces: Sequence[Part]) -> Part:
     return _filled(convex_hull, sum(p.volume for p in pieces), sum(p.area for p in pieces))
 
 
-def convex(points: Floats, matter: float) -> Part | None:
+def convex_part(points: Floats, matter: float) -> Part | None:
     """Return the hull of points (N, 3) as a part that holds `matter` [m3] at most; None where they span nothing."""
     convex_hull = hull(points)
     if convex_hull is None or convex_hull[2] <= 0:
@@ -300,7 +300,7 @@ def qhull_of(points: Floats) -> ConvexHull | None:
         return None
 
 
-def outside(points: Floats, planes: Floats) -> Floats:
+def distances_outside(points: Floats, planes: Floats) -> Floats:
     """Return how far points (P, 3) are outside of a convex piece, by the planes (F, 4) of its faces; negative within."""
     return np.asarray((points @ planes[:, :3].T + planes[:, 3]).max(axis=1))
 

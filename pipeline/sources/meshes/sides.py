@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from pipeline.arrays import Floats, Ints
-from pipeline.sources.meshes.mesh_solids import LEFT_OUT, hull, outside, qhull_of
+from pipeline.sources.meshes.mesh_solids import LEFT_OUT, distances_outside, hull, qhull_of
 
 SIDES = 64
 ALIKE = 3  # decimals of normals, and of distances [m], by which two sides are one
@@ -22,7 +22,7 @@ def with_few_sides(corners: Floats, faces: Ints, off: float) -> tuple[Floats, In
         return corners, faces
     chosen, kept, left = _outlines(corners), corners, np.inf
     while left > LEFT_OUT and (within := _within(corners[chosen])):
-        away = outside(corners, within.equations)
+        away = distances_outside(corners, within.equations)
         kept, left = corners[chosen], float(away.max())
         chosen = np.append(chosen, int(np.argmax(away)))
     fewer = hull(kept) if left <= off else None

@@ -13,7 +13,7 @@ from shapely.geometry import MultiPoint
 from shapely.geometry.base import BaseGeometry
 
 from pipeline.arrays import Bools, Floats
-from pipeline.sources.meshes.mesh_solids import Part, combine_parts, outside
+from pipeline.sources.meshes.mesh_solids import Part, combine_parts, distances_outside
 
 FOOT = (0.045, 0.018)  # [m] a foot is no longer, no wider
 MEET = 0.001  # [m] between pieces that meet
@@ -37,9 +37,9 @@ def without_feet(pieces: Sequence[Part]) -> list[Part]:
     for k in slight:
         corners = pieces[k].hull
         larger = [i for i, extent in enumerate(extents) if extent[2] >= SLIGHT * extents[k][2]]
-        ends = [i for i in larger if outside(corners, planes[i]).min() < MEET]
+        ends = [i for i in larger if distances_outside(corners, planes[i]).min() < MEET]
         edges = (corners[:, None] + corners[None]).reshape(-1, 3) / 2  # their middles too, and points within
-        if len(ends) > 1 and np.min([outside(edges, planes[i]) for i in ends], axis=0).max() <= APART:
+        if len(ends) > 1 and np.min([distances_outside(edges, planes[i]) for i in ends], axis=0).max() <= APART:
             feet.add(k)
     return [p for k, p in enumerate(pieces) if k not in feet]
 

@@ -52,7 +52,7 @@ Offer = tuple[float, tuple[int, ...]]  # how much changes, who becomes one
 
 
 @dataclass(frozen=True, slots=True)
-class Felt:
+class TouchTolerances:
     """How far a surface may be off [m]: where things lie (faces upwards), at the sides, from below; `yielding` grows with height to LEFT_ALONE.
 
     What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt, higher than `over` nothing.
@@ -81,18 +81,18 @@ class Felt:
 
 FELT = MappingProxyType(  # by what cards say
     {
-        "seen": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
-        "block": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
-        "soft": Felt(SOFT, SOFT, SOFT, soft=True),
-        "yielding": Felt(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True),
-        "closed": Felt(BUMPED, closed=True),
-        "handled": Felt(BUMPED, closed=True),
+        "seen": TouchTolerances(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
+        "block": TouchTolerances(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
+        "soft": TouchTolerances(SOFT, SOFT, SOFT, soft=True),
+        "yielding": TouchTolerances(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True),
+        "closed": TouchTolerances(BUMPED, closed=True),
+        "handled": TouchTolerances(BUMPED, closed=True),
     }
 )
 OFF = MappingProxyType({"closed": HELD, "handled": BUMPED})  # of small things
 
 
-def touch_tolerances(category: Category, *, opens: bool) -> Felt:
+def touch_tolerances(category: Category, *, opens: bool) -> TouchTolerances:
     """Return how truly a thing of a category is felt: hands come to what is small and to what opens, bodies to other furniture."""
     if category.felt:
         felt = FELT[category.felt]
@@ -100,17 +100,17 @@ def touch_tolerances(category: Category, *, opens: bool) -> Felt:
             return replace(felt, sides=OFF[category.felt], down=OFF[category.felt])
         return replace(felt, sides=SOFT, down=LEFT_ALONE) if category.felt == "closed" and category.mount == "wall" else felt
     if category.loose:
-        return Felt(vessel=True)
+        return TouchTolerances(vessel=True)
     if opens:
-        return Felt()
+        return TouchTolerances()
     if category.super in CUSHIONED:  # under a sofa's arm the drawer of a side table comes out
         under = SEAT if category.tuck == "seat" or category.super == "bed" else UNDER
-        return Felt(GIVES, BETWEEN, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
+        return TouchTolerances(GIVES, BETWEEN, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
     over = OVER if category.mount == "floor" else ANY
-    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED, legs=LOW)
+    return TouchTolerances(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED, legs=LOW)
 
 
-def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
+def simplify_pieces(pieces: Sequence[Part], how: TouchTolerances) -> tuple[Part, ...]:
     """Return convex pieces [m] as few as they can be felt for the same by."""
     if not pieces:
         return ()
@@ -124,13 +124,13 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
     if how.soft:
         pieces = [lie_flat(combine_parts(pieces))]
     if how.closed:
-        pieces = discs(pieces)
+        pieces = merge_rings(pieces)
     if how.sides <= TOUCHED:
         pieces = without_feet(pieces)
     elif how.up <= TOUCHED:
         pieces = rows_as_blocks(pieces)
     allowed = _tolerance(pieces, how)
-    fewer_pieces = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT, sag=how.sag), allowed)
+    fewer_pieces = drop_unfelt(merge_by_touch(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT, sag=how.sag), allowed)
     if how.vessel:
         fewer_pieces = _with_floors(fewer_pieces, pieces, allowed)
     if legs:
@@ -139,7 +139,7 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
 
 
 def _with_floors(pieces: Sequence[Part], original: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
-    """Return the sectors of a bowl, each with its slice of the floor that they stand around, in place of sectors and floor; see `fewer` for `allowed`."""
+    """Return the sectors of a bowl, each with its slice of the floor that they stand around, in place of sectors and floor; see `merge_by_touch` for `allowed`."""
     sliced, middle = with_floor(pieces)
     planes = [_planes(p.hull) for p in original]
 
@@ -150,7 +150,7 @@ def _with_floors(pieces: Sequence[Part], original: Sequence[Part], allowed: Allo
     return tuple(sliced) if all(_deviation(p.hull, planes, between) is not None for p in sliced) else tuple(pieces)
 
 
-def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
+def drop_unfelt(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
     """Return the pieces without those that the others feel the same without: a basin's bottom close above its worktop.
 
     Less is allowed than for a hull, which bears something: what is deep in a vessel is its floor.
@@ -169,7 +169,7 @@ def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
     return tuple(pieces[k] for k in sorted(kept))
 
 
-def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
+def _tolerance(pieces: Sequence[Part], how: TouchTolerances) -> Allowed:
     points = np.concatenate([p.hull for p in pieces])
     low, high = points.min(axis=0), points.max(axis=0)
     least = SHARE * float((high - low).min())
@@ -209,7 +209,7 @@ class _Hollow:
         return np.asarray(inside & inwards)
 
 
-def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
+def _hollows(pieces: Sequence[Part], how: TouchTolerances) -> list[_Hollow]:
     """Return the inside of a vessel, and those of the rings in other things: basins, drums."""
     rings = [list(pieces)] if how.vessel else [[pieces[k] for k in ring] for ring in same_height(pieces) if is_ring(pieces, ring)]
     hollows = []
@@ -228,13 +228,15 @@ def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
     return hollows
 
 
-def discs(pieces: Sequence[Part]) -> list[Part]:
+def merge_rings(pieces: Sequence[Part]) -> list[Part]:
     """Return the pieces with the staves of each ring, all of them between the same heights, as one."""
     levels = [[pieces[k] for k in level] for level in same_height(pieces)]
     return [disc for level in levels for disc in (level if len(level) < STAVES else [combine_parts(level)])]
 
 
-def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, rings: bool = True, sag: float = 0.0) -> tuple[Part, ...]:
+def merge_by_touch(
+    pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, rings: bool = True, sag: float = 0.0
+) -> tuple[Part, ...]:
     """Return convex pieces [m] merged as long as no surface point goes further from where it was than is `allowed` there.
 
     All at once where that may be, else the staves of `rings` in sectors, then pairs, those that change least first. Pieces whose boxes are
@@ -267,7 +269,7 @@ def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, r
 def _merge_groups(
     pieces: Sequence[Part], rings: Sequence[list[int]], share: Callable[[Sequence[int], Floats], float | None], apart: float
 ) -> list[list[int]]:
-    """Return groups of pieces by index, merged from the `rings` and the single others; see `fewer`."""
+    """Return groups of pieces by index, merged from the `rings` and the single others; see `merge_by_touch`."""
     groups = [*rings, *([k] for k in range(len(pieces)) if not any(k in ring for ring in rings))]
     hulls, volumes = (list(v) for v in zip(*(_outer(np.concatenate([pieces[k].hull for k in group])) for group in groups), strict=True))
     boxes = [np.array([h.min(axis=0), h.max(axis=0)]) for h in hulls]

@@ -112,7 +112,7 @@ def read_obj(folder: Folder, relative: str, base: str = "") -> ObjFile:
     return parse_obj(folder.read(relative, MAX_OBJ, base), relative)
 
 
-def visual(group: ObjGroup, file: ObjFile, points: Floats, name: str, material: int, part: str = "") -> Mesh | None:
+def visual_mesh(group: ObjGroup, file: ObjFile, points: Floats, name: str, material: int, part: str = "") -> Mesh | None:
     """Return a group as a mesh; `points` (V, 3) are the file's vertices already in the object frame [m].
 
     A vertex is a (position, uv) pair. None for a group without a proper face.

@@ -61,7 +61,7 @@ class Room:
         return np.where(self.rivals[k], np.maximum(depths.min(1), 0.0), 0.0), depths, axes
 
 
-def clear(pieces: Sequence[Placed], floor: Polygon, taxonomy: Taxonomy, farthest: float) -> list[Placed]:
+def move_apart(pieces: Sequence[Placed], floor: Polygon, taxonomy: Taxonomy, farthest: float) -> list[Placed]:
     """Return the pieces of a room, those in walls or in each other moved by `farthest` [m] at most, with a note each.
 
     What rests on a piece moves with it; seats stay under tables, small things and lamps where they are. A piece that finds no free

@@ -12,12 +12,12 @@ from pipeline.entities.asset import Asset, Link, Mesh
 from pipeline.entities.files import load_asset, save_asset
 from pipeline.sources.densities import density
 from pipeline.sources.guarded import Folder, read_json
-from pipeline.sources.meshes.colliders import POCKET, link, solids
+from pipeline.sources.meshes.colliders import POCKET, build_link, solids
 from pipeline.sources.meshes.touching import touch_tolerances
-from pipeline.sources.meshes.visual_meshes import Palette, read_obj, visual
+from pipeline.sources.meshes.visual_meshes import Palette, read_obj, visual_mesh
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
-from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest, unit_factor
+from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest_category, unit_factor
 from pipeline.sources.threed_front.furniture import mirrored_id
 from pipeline.sources.threed_front.model_hints import Hint
 from pipeline.sources.threed_front.poses import Box, to_ours
@@ -88,14 +88,14 @@ def read_model(models: Folder, info: ModelInfo, limits: ModelLimits, licence: st
     visuals: list[Mesh] = []
     collisions: list[tuple[Floats, Ints]] = []
     for group in file.groups:
-        mesh = visual(group, file, points, f"mesh_{len(visuals):03d}", palette.index(file.library, "", group.material))
+        mesh = visual_mesh(group, file, points, f"mesh_{len(visuals):03d}", palette.index(file.library, "", group.material))
         if mesh:
             visuals.append(mesh)
             collisions.append((points, group.faces))
     known = words.categories[category]
     kind, how = known.super, touch_tolerances(known, opens=False)
     matter = solids("base", collisions, limits, POCKET * float(np.linalg.norm(size)) if limits.cut == "all" else None)
-    base = link("base", visuals, matter, density(kind, info.material, category), kind, how=how)
+    base = build_link("base", visuals, matter, density(kind, info.material, category), kind, how=how)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")
     asset_id = f"ff_{''.join(c if c.isalnum() and c.isascii() else '_' for c in info.model_id.lower())}"
@@ -120,7 +120,7 @@ def identify_category(info: ModelInfo, hint: Hint, extent: Floats) -> tuple[str,
     if category is None:
         members = words.of_kind(info.category, info.super_category, hint.kind())
         mounted = [m for m in members if words.categories[m].mount in hint.mounts()] or members
-        category = hint.category() or likeliest(extent * unit_factor(extent, declared, None), mounted)
+        category = hint.category() or likeliest_category(extent * unit_factor(extent, declared, None), mounted)
         if category is None:
             raise SourceError("unknown_category", info.model_id, named)
         notes.append(("category_inferred", f"{category}, for {named}"))

@@ -40,7 +40,7 @@ def supports(objects: Sequence[Placed], taxonomy: Taxonomy) -> list[int]:
     return bearers
 
 
-def floating(piece: Placed, support: int, taxonomy: Taxonomy) -> bool:
+def hangs_in_air(piece: Placed, support: int, taxonomy: Taxonomy) -> bool:
     """Whether a small thing hangs in the air: its support was left out."""
     category = taxonomy.categories[piece.category]
     return not category.layout and category.mount == "floor" and support < 0 and piece.span[0] > ON

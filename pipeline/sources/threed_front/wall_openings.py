@@ -95,7 +95,7 @@ def openings(
     around = bays(panes)
     take(around, odd)
     odd += [pane for pane in panes if not any(bay.reaches(pane.centre) for bay in around)]
-    return [*room_openings, *touching(rooms, height, room_openings, walls)], depths, [*odd, *rest]
+    return [*room_openings, *passages_between(rooms, height, room_openings, walls)], depths, [*odd, *rest]
 
 
 def _in_wall(hole: OpeningEvidence, rooms: Rooms, reach: float) -> OpeningEvidence:
@@ -150,7 +150,7 @@ def _kind(hole: OpeningEvidence, rooms: int) -> OpeningKind:
     return "open" if hole.width > OPEN_WIDTH else "portal"
 
 
-def touching(
+def passages_between(
     rooms: Rooms, height: float, known: Sequence[Opening], walls: Callable[[], shapely.Geometry] = shapely.MultiLineString
 ) -> list[Opening]:
     """Return the opening of each pair of rooms whose floors meet without a wall: `open`, or `portal` on a doorway's width.
