@@ -34,7 +34,7 @@ def find_prerequisites(asset: Asset) -> list[tuple[int, ...]]:
     joints = asset.joints
     moved = [moved_links(asset, k) for k in range(len(joints))]
     points = [np.concatenate([link_points(asset.links[i]) for i in links]) for links in moved]
-    rest = [_box(own) for own in points]
+    rest = [np.stack([own.min(0, initial=np.inf), own.max(0, initial=-np.inf)]) for own in points]
     prerequisites: list[set[int]] = [set() for _ in joints]
     for k, joint in enumerate(joints):
         if joint.part_class in HELD:
@@ -69,7 +69,3 @@ def _meet(a: Prisms, b: Prisms) -> bool:
     alone = np.full(len(a), -1)
     hits = first_hits(a.corners, a.count, a.z, a.boxes(), alone, b.corners, b.count, b.z, b.boxes(), start, group_boxes(b, start), TOUCH)
     return bool((hits >= 0).any())
-
-
-def _box(points: Floats) -> Floats:
-    return np.stack([points.min(0), points.max(0)]) if len(points) else np.array([[np.inf] * 3, [-np.inf] * 3])

@@ -31,8 +31,8 @@ def stand_pose(
     raster = space.floor.raster
     corners, count = np.ascontiguousarray(swept.corners[low]), swept.count[low]
     x, y, angle = float(grip[0]), float(grip[1]), math.atan2(float(heading[1]), float(heading[0]))
-    x, y, found = _search(x, y, angle, distances, turns, space.labels, label, raster.origin, raster.cell, corners, count, robot.radius)
-    return (x, y) if found else None
+    x, y, stands = _search(x, y, angle, distances, turns, space.labels, label, raster.origin, raster.cell, corners, count, robot.radius)
+    return (x, y) if stands else None
 
 
 @functools.lru_cache(maxsize=16)

@@ -53,8 +53,8 @@ def fit_shape(
         [partial(metric_scale.fit_metric, unit=unit) for unit in UNITS] if shape.source == "urdf" else []
     )
     for fit_one in (*to_scale, metric_scale.fit):
-        if found := fits(_Variant(shape, AS_DRAWN, 0.0, ""), fit_one, limits.fit_rms if fit_one is metric_scale.fit else np.inf):
-            return shape, found
+        if fitting := fits(_Variant(shape, AS_DRAWN, 0.0, ""), fit_one, limits.fit_rms if fit_one is metric_scale.fit else np.inf):
+            return shape, fitting
     variants = list(_variants(shape))
     for wide in (False, True):
         if wide and shape.source == "urdf" and len(categories) > ANYTHING:
@@ -64,14 +64,14 @@ def fit_shape(
             # Objects of a category are compared as they are drawn: turned ones are another matter.
             speaks = own if variant.order == AS_DRAWN and variant.cost <= FOLD else None
             how = partial(metric_scale.fit_wide, own=speaks) if wide else metric_scale.fit
-            if found := fits(variant, how, np.inf if wide else limits.fit_rms):
-                candidates.append((found[0].likelihood - variant.cost, variant, found))
+            if fitting := fits(variant, how, np.inf if wide else limits.fit_rms):
+                candidates.append((fitting[0].likelihood - variant.cost, variant, fitting))
         if candidates:
-            _, best, found = max(candidates, key=lambda entry: entry[0])
+            _, best, fitting = max(candidates, key=lambda entry: entry[0])
             what = ", ".join(filter(None, (best.what, "wide priors" if wide else ""))) or "as drawn"
             shape = best.shape.copied()
-            shape.notes.append(("model", "refitted", f"{what}: rms {found[0].rms:.2f} as {found[0].category}"))
-            return shape, found
+            shape.notes.append(("model", "refitted", f"{what}: rms {fitting[0].rms:.2f} as {fitting[0].category}"))
+            return shape, fitting
     return shape, ()
 
 

@@ -14,6 +14,7 @@ from pipeline.sources.articulated.part_classes import words_of
 from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, apply, span_of
 from pipeline.sources.articulated.urdf import UrdfJoint
 from pipeline.sources.meshes.mesh_solids import even_directions
+from pipeline.sources.meshes.sides import AROUND
 
 TURNS = 4 * math.pi  # [rad] a range beyond this is no limit
 SMALLEST = {"revolute": 1e-3, "prismatic": 1e-4}  # ranges [rad, units] below which nothing moves
@@ -25,17 +26,8 @@ STEPS = 41  # positions of a hinge that are tried, and again between the neighbo
 STROKE = 0.08  # share of the object's diagonal up to which what slides and turns is a knob or cap that turns
 TURNED = frozenset({"hinge_knob", "hinge_handle", "hinge_lid", "hinge_door"})
 TURNING_WORDS = ("knob", "cap", "dial", "switch", "screw", "lever", "valve", "wheel", "seat", "chair")
+DIRECTIONS = np.concatenate([even_directions(100), AROUND / np.linalg.norm(AROUND, axis=1)[:, None]])  # in which outlines reach furthest
 Limits = tuple[JointType, float, float]
-
-
-def _directions(count: int) -> Floats:
-    """Return unit vectors (count + 26, 3): evenly spread, and those towards the faces, edges and corners of a cube."""
-    cube = np.stack(np.meshgrid(*[(-1.0, 0.0, 1.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    cube = cube[np.abs(cube).sum(axis=1) > 0]
-    return np.concatenate([even_directions(count), cube / np.linalg.norm(cube, axis=1)[:, None]])
-
-
-DIRECTIONS = _directions(100)
 
 
 def limits(joint: UrdfJoint, known: Mobility | None, notes: list[Note]) -> Limits | None:

@@ -48,7 +48,9 @@ def _mover_part(body: ShapeBody, joint: ShapeJoint) -> PartBox:
     if joint.type == "prismatic":
         z = _unit(joint.axis, FRONT)
     else:
-        out = _unit(np.cross(joint.axis, _far(points, joint) - joint.origin), FRONT)
+        radius = axis_distances(joint, points)
+        far = points[radius >= 0.9 * radius.max()].mean(axis=0)
+        out = _unit(np.cross(joint.axis, far - joint.origin), FRONT)
         z = max((s * n for n in _sides(points, joint.axis) for s in (1, -1)), key=lambda n: float(n @ out), default=out)
     x = joint.axis if joint.part_class in {"hinge_door", "hinge_lid"} else _level(z)
     return _fit_part_box(joint.child, joint.part_class, points, x, z, annotated=not joint.inferred)
@@ -92,12 +94,6 @@ def _outwards(points: Floats, carrier: ShapeJoint) -> Floats:
     k = int(np.argmax(np.abs(out)))
     z[k] = np.sign(out[k]) or 1.0
     return z
-
-
-def _far(points: Floats, joint: ShapeJoint) -> Floats:
-    """Return the middle of the points that lie farthest from a hinge's axis."""
-    radius = axis_distances(joint, points)
-    return np.asarray(points[radius >= 0.9 * radius.max()].mean(axis=0))
 
 
 def _fit_part_box(body: int, part_class: str, points: Floats, x: Floats, z: Floats, *, annotated: bool) -> PartBox:

@@ -106,7 +106,8 @@ class _Reader:
             T = T @ _transform(element)
         for instance in node.findall("instance_geometry"):
             bound = {m.get("symbol"): m.get("target", "").removeprefix("#") for m in instance.iter("instance_material")}
-            for primitive in self._resolve(instance).findall("mesh[1]/*"):
+            mesh = self._resolve(instance).find("mesh")
+            for primitive in mesh if mesh is not None else ():
                 if primitive.tag in KINDS:
                     self._visit()
                     self._primitive(primitive, T, bound)
@@ -122,10 +123,7 @@ class _Reader:
         if not 0 < width <= MOST_INPUTS:
             raise SourceError("not_obj", self.where, f"has corners of {width} indices")
         corners = np.concatenate([*_triangles(primitive, width), np.zeros((0, 3, width), np.int64)])
-        position = next(
-            i for i in self.elements[vertex.get("source").removeprefix("#")].findall("input") if i.get("semantic") == "POSITION"
-        )
-        points = self._source(position, 3)
+        points = self._source(self.elements[vertex.get("source").removeprefix("#")].find("input[@semantic='POSITION']"), 3)
         uvs = self._source(uv, 2) if uv is not None else np.zeros((0, 2))
         faces = corners[:, :, int(vertex.get("offset", 0))]
         uv_faces = corners[:, :, int(uv.get("offset", 0))] if uv is not None else np.full_like(faces, -1)

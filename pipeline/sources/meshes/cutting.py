@@ -274,13 +274,10 @@ def _best(grid: _Grid, piece: _Piece, axis: int) -> tuple[float, int, int]:
     )[::-1]
     whole = max(float(piece.hull.volume), 1e-15)
     even = np.abs((planes - first) / (last - first) - 0.5) * 2
-    cost = (np.array(left) + np.array(right)) / whole + BALANCE * (1 + even - (last - first) * grid.cell / _span(grid))
+    share = (last - first) * grid.cell / (float(max(grid.depth.shape)) * grid.cell)
+    cost = (np.array(left) + np.array(right)) / whole + BALANCE * (1 + even - share)
     k = int(np.argmin(cost.round(9)))
     return float(cost[k].round(9)), axis, int(planes[k])
-
-
-def _span(grid: _Grid) -> float:
-    return float(max(grid.depth.shape)) * grid.cell
 
 
 def _fewer(grid: _Grid, members: Ints, axis: int) -> Ints:

@@ -41,16 +41,9 @@ class Part:
     def scaled(self, shift: Floats, factor: float) -> Part:
         """Return the part moved by -`shift` (3,), then scaled by `factor`."""
         cubed = factor**3
-        return Part(
-            (self.hull - shift) * factor,
-            self.faces,
-            self.hull_volume * cubed,
-            self.fill,
-            self.volume * cubed,
-            self.area * factor**2,
-            (self.centre - shift) * factor,
-            self.inertia * cubed * factor**2,
-        )
+        hull, centre = (self.hull - shift) * factor, (self.centre - shift) * factor
+        measures = self.hull_volume * cubed, self.fill, self.volume * cubed, self.area * factor**2
+        return Part(hull, self.faces, *measures, centre, self.inertia * cubed * factor**2)
 
 
 def parts(vertices: Floats, faces: Ints) -> list[Part]:

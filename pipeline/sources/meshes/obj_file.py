@@ -138,8 +138,8 @@ def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
 
 
 def _set(entry: MtlMaterial, key: str, rest: str) -> MtlMaterial:
-    if key == "map_Kd":
-        return replace(entry, map=_without_options(rest))
+    if key == "map_Kd":  # without options like `-s 1 1 1` before the file's name, which may contain blanks
+        return replace(entry, map=re.sub(r"^(-[a-zA-Z]+\s+((-?[\d.]+|on|off)\s+)*)+", "", rest).strip())
     values = _finite(rest.split()[: 3 if key == "Kd" else 1])
     shares = [min(max(v, 0.0), 1.0) for v in values]
     if key == "Kd" and len(shares) == 3:
@@ -149,11 +149,6 @@ def _set(entry: MtlMaterial, key: str, rest: str) -> MtlMaterial:
     if key == "Pm" and shares:
         return replace(entry, metallic=shares[0])
     return replace(entry, opacity=shares[0] if key == "d" else 1 - shares[0]) if key in {"d", "Tr"} and shares else entry
-
-
-def _without_options(rest: str) -> str:
-    """Drop options like `-s 1 1 1` before the file's name, which may contain blanks."""
-    return re.sub(r"^(-[a-zA-Z]+\s+((-?[\d.]+|on|off)\s+)*)+", "", rest).strip()
 
 
 def _finite(words: Sequence[str]) -> list[float]:

@@ -343,24 +343,25 @@ def _deviation(points: Floats, planes: Sequence[Floats], allowed: Allowed) -> fl
         off = np.minimum(*(allowed(left, np.tile(way, (len(left), 1))) for way in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))))
         if _away(left, [kept.equations], np.clip(off, TOUCHED, BUMPED)) > 1.0:
             return None
-        points, hull = kept.points, kept
-    corners, normals = points[hull.simplices], hull.equations[:, :3]
+        hull = kept
     worst = 0.0
     for count in SAMPLES:
-        at = spread(corners, count) if count else corners.mean(axis=1)
-        tolerance = allowed(at, np.repeat(normals, len(at) // len(corners), axis=0))
-        worst = _away(at, planes, tolerance)
+        at, normals = sample_hull(hull, count)
+        worst = _away(at, planes, allowed(at, normals))
         if worst > 1.0:
             return None
     return worst
 
 
-def spread(corners: Floats, count: int) -> Floats:
-    """Return points (F P, 3) spread over triangles (F, 3, 3), `count` intervals along a side."""
+def sample_hull(hull: ConvexHull, count: int) -> tuple[Floats, Floats]:
+    """Return points (P, 3) spread over the triangles of a hull, `count` intervals along a side, 0: their middles; and the normals there."""
+    corners, normals = hull.points[hull.simplices], hull.equations[:, :3]
+    if not count:
+        return corners.mean(axis=1), normals
     u, v = (k.ravel() for k in np.meshgrid(np.arange(count + 1), np.arange(count + 1), indexing="ij"))
     inside = u + v <= count
     weights = np.stack([u, v, count - u - v], axis=1)[inside] / count
-    return np.asarray(np.einsum("pk,fkd->fpd", weights, corners).reshape(-1, 3))
+    return np.einsum("pk,fkd->fpd", weights, corners).reshape(-1, 3), np.repeat(normals, len(weights), axis=0)
 
 
 def _away(points: Floats, planes: Sequence[Floats], tolerance: Floats) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.arrays import Floats
 from pipeline.entities.asset import Material, Mesh
 from pipeline.sources.guarded import DRIVE, Folder
-from pipeline.sources.meshes.obj_file import MAX_MTL, MAX_OBJ, MtlMaterial, ObjFile, ObjGroup, parse_mtl, parse_obj
+from pipeline.sources.meshes.obj_file import MAX_MTL, MtlMaterial, ObjFile, ObjGroup, parse_mtl
 from pipeline.sources.meshes.textures import MAX_FILE, prepare_texture
 from pipeline.sources.reasons import SourceError
 
@@ -105,11 +105,6 @@ class Palette:
 def _without_drive(path: str) -> str:
     """Return the file's name of a path on somebody's own disk, any other path as it is."""
     return path.replace("\\", "/").rsplit("/", 1)[-1] if DRIVE.match(path) else path
-
-
-def read_obj(folder: Folder, relative: str, base: str = "") -> ObjFile:
-    """Read an OBJ file of a folder."""
-    return parse_obj(folder.read(relative, MAX_OBJ, base), relative)
 
 
 def visual_mesh(group: ObjGroup, file: ObjFile, points: Floats, name: str, material: int, part: str = "") -> Mesh | None:

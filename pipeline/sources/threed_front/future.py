@@ -13,8 +13,9 @@ from pipeline.entities.files import load_asset, save_asset
 from pipeline.sources.densities import density
 from pipeline.sources.guarded import Folder, read_json
 from pipeline.sources.meshes.colliders import POCKET, build_link, solids
+from pipeline.sources.meshes.obj_file import MAX_OBJ, parse_obj
 from pipeline.sources.meshes.touching import touch_tolerances
-from pipeline.sources.meshes.visual_meshes import Palette, read_obj, visual_mesh
+from pipeline.sources.meshes.visual_meshes import Palette, visual_mesh
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest_category, unit_factor
@@ -74,7 +75,7 @@ def read_model(models: Folder, info: ModelInfo, limits: ModelLimits, licence: st
     origin. Raises SourceError for what cannot be an asset.
     """
     folder, words = models.sub(info.model_id), taxonomy.load()
-    file = read_obj(folder, "raw_model.obj")
+    file = parse_obj(folder.read("raw_model.obj", MAX_OBJ), "raw_model.obj")
     used = np.unique(np.concatenate([g.faces.ravel() for g in file.groups]))
     low, high = file.vertices[used].min(axis=0), file.vertices[used].max(axis=0)
     extent = (high - low)[[0, 2, 1]]
