@@ -49,13 +49,8 @@ def _pieces(leaf: Leaf) -> list[Floats]:
 def _posed(leaf: Leaf, elevation: float, angles: Floats, piece: Floats) -> Floats:
     """Return the corners (A, 8, 3) [m] of a piece, the leaf opened by `angles` (A,)."""
     start, end, out, low, high = piece.tolist()
-    flat = _outlines(leaf, angles, start, end, out)
-    return np.concatenate([np.dstack([flat, np.full(flat.shape[:2], elevation + z)]) for z in (low, high)], axis=1)
-
-
-def _outlines(leaf: Leaf, angles: Floats, start: float, end: float, out: float) -> Floats:
-    """Return the part (A, 4, 2) of the leaf from `start` to `end` [m from the hinge edge], thicker by `out`, opened by `angles` (A,)."""
     a, b, _, d = np.moveaxis(np.array([leaf.outline(float(angle)) for angle in angles]), 1, 0)
     along = (b - a) / np.maximum(np.linalg.norm(b - a, axis=1, keepdims=True), 1e-9)
     front = (a - d) / np.maximum(np.linalg.norm(a - d, axis=1, keepdims=True), 1e-9) * out
-    return np.stack([a + along * start + front, a + along * end + front, d + along * end - front, d + along * start - front], axis=1)
+    flat = np.stack([a + along * start + front, a + along * end + front, d + along * end - front, d + along * start - front], axis=1)
+    return np.concatenate([np.dstack([flat, np.full(flat.shape[:2], elevation + z)]) for z in (low, high)], axis=1)

@@ -41,7 +41,8 @@ def _bands(kind: str, cuts: Sequence[Cut], built: Shell, heights: Callable[[Cut]
         group.sort(key=lambda cut: float(cut.quad.mean(axis=0) @ along))
         run = group[0].quad
         for cut in group[1:]:
-            longer = _spanning_rectangle(run, cut.quad)
+            around = shapely.minimum_rotated_rectangle(shapely.convex_hull(shapely.MultiPoint(np.concatenate([run, cut.quad]))))
+            longer = np.asarray(shapely.geometry.polygon.orient(around).exterior.coords)[:-1]
             if _solid(longer, bottom, top, built):
                 run = longer
             else:
@@ -58,13 +59,6 @@ def _line(cut: Cut) -> tuple[float, ...]:
         along = -along
     across = cut.quad @ np.array([-along[1], along[0]])
     return tuple(np.round([*along, across.min(), across.max()], 4).tolist())
-
-
-def _spanning_rectangle(first: Floats, second: Floats) -> Floats:
-    """Return the rectangle (4, 2) over two of the same wall."""
-    hull = shapely.convex_hull(shapely.MultiPoint(np.concatenate([first, second])))
-    box = shapely.geometry.polygon.orient(shapely.minimum_rotated_rectangle(hull))
-    return np.asarray(box.exterior.coords)[:-1]
 
 
 def _solid(quad: Floats, bottom: float, top: float, built: Shell) -> bool:

@@ -34,11 +34,8 @@ class Step:
 
 def steps(plan: Plan, level: int) -> tuple[Step, ...]:
     """Return the landings on a storey with their balustrades, and the flights that lead up from it."""
-    pieces: list[Step] = []
-    for room in plan.rooms:
-        if room.type == "staircase" and level in plan.levels_of(room):
-            pieces.extend(_storey(plan, room, level))
-    return tuple(pieces)
+    staircases = [room for room in plan.rooms if room.type == "staircase" and level in plan.levels_of(room)]
+    return tuple(step for room in staircases for step in _storey(plan, room, level))
 
 
 def visible_steps(plan: Plan, level: int) -> tuple[Step, ...]:

@@ -6,7 +6,7 @@ file's name and those of its folders, else from the size.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import TypeVar
@@ -39,7 +39,9 @@ def read_plain_urdf(root: Folder, file: str, source_id: str, texture_limit: int)
     """Read the URDF at `file` (relative to `root`), in the frame that it is drawn in. Raises SourceError."""
     base = PurePosixPath(file).parent.as_posix()
     urdf, snapped = _snap_rotations(parse_urdf(root.read(file, MAX_URDF), file))
-    reader = ShapeReader(root, "" if base == "." else base, urdf, np.eye(3), Hints(named=_words(urdf)), texture_limit)
+    # a link's name and its joint's say what it is: "drawer_top"
+    words = {name: name for name in urdf.links} | {joint.child: f"{joint.child} {joint.name}" for joint in urdf.joints}
+    reader = ShapeReader(root, "" if base == "." else base, urdf, np.eye(3), Hints(named=words), texture_limit)
     if snapped:
         reader.notes.append(("model", "angle_snapped", f"{snapped} angles"))
     return reader.shape("urdf", source_id, "")
@@ -141,8 +143,3 @@ def _snap_rotations(urdf: Urdf) -> tuple[Urdf, int]:
 
     links = {k: replace(link, visuals=exact(link.visuals), collisions=exact(link.collisions)) for k, link in urdf.links.items()}
     return replace(urdf, links=links, joints=exact(urdf.joints)), count
-
-
-def _words(urdf: Urdf) -> Mapping[str, str]:
-    """Return {link: the words of its own name and its joint's}: "drawer_top" says what it is."""
-    return {name: name for name in urdf.links} | {joint.child: f"{joint.child} {joint.name}" for joint in urdf.joints}

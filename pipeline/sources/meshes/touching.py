@@ -123,8 +123,9 @@ def simplify_pieces(pieces: Sequence[Part], how: TouchTolerances) -> tuple[Part,
     pieces = blocks_under(pieces, low + how.under)
     if how.soft:
         pieces = [lie_flat(combine_parts(pieces))]
-    if how.closed:
-        pieces = merge_rings(pieces)
+    if how.closed:  # the staves of each ring, all of them between the same heights, are one
+        levels = [[pieces[k] for k in level] for level in same_height(pieces)]
+        pieces = [disc for level in levels for disc in (level if len(level) < STAVES else [combine_parts(level)])]
     if how.sides <= TOUCHED:
         pieces = without_feet(pieces)
     elif how.up <= TOUCHED:
@@ -226,12 +227,6 @@ def _hollows(pieces: Sequence[Part], how: TouchTolerances) -> list[_Hollow]:
             _Hollow(middle, (low[2] - TOUCHED, high[2] + TOUCHED), np.inf if how.vessel else float(np.ptp(points[:, 0])) / 2, depth)
         )
     return hollows
-
-
-def merge_rings(pieces: Sequence[Part]) -> list[Part]:
-    """Return the pieces with the staves of each ring, all of them between the same heights, as one."""
-    levels = [[pieces[k] for k in level] for level in same_height(pieces)]
-    return [disc for level in levels for disc in (level if len(level) < STAVES else [combine_parts(level)])]
 
 
 def merge_by_touch(
