@@ -25,7 +25,7 @@ from pipeline import taxonomy
 from pipeline.card import Category
 from pipeline.entities.asset import Asset, Link
 from pipeline.entities.files import load_asset
-from pipeline.sources.meshes.mesh_solids import outside
+from pipeline.sources.meshes.mesh_solids import distances_outside
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.touching import OVER
 from pipeline.usd.articulation import is_visual_only
@@ -161,7 +161,7 @@ def _planes(link: Link) -> list[Floats]:
 
 def _outside(points: Floats, link: Link) -> Floats:
     """Return how far points (P, 3) are outside of all colliders, by the planes of their faces; negative within."""
-    away: Floats = np.min([outside(points, e) for e in _planes(link)], axis=0)
+    away: Floats = np.min([distances_outside(points, e) for e in _planes(link)], axis=0)
     return away
 
 
@@ -172,7 +172,7 @@ def _collider_points(link: Link, rng: np.random.Generator) -> tuple[Floats, Floa
     points, normals, which = _spread(triangles, POINTS, rng)
     free = np.ones(len(points), bool)
     for k, e in enumerate(_planes(link)):
-        free &= (outside(points, e) > -WITHIN) | (owner[which] == k)
+        free &= (distances_outside(points, e) > -WITHIN) | (owner[which] == k)
     return points[free], normals[free]
 
 

@@ -5,9 +5,8 @@ Boxes turn about +Z only. Footprint corners are counter-clockwise from the objec
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
 
 
 def footprints(position: Floats, yaw: Floats, size: Floats) -> Floats:

@@ -5,15 +5,12 @@ plan polygons overlap by more than `tolerance` [m] in depth and their z interval
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.geometry.compiled import borrowing, compiled
 from pipeline.geometry.convex import gap
 from pipeline.geometry.polygons import beyond
 from pipeline.geometry.prisms import Prisms
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def group_boxes(prisms: Prisms, start: Ints) -> Floats:

@@ -6,11 +6,9 @@ A polygon is (V, 2) [m], counter-clockwise; repeated vertices are allowed (they 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.geometry.compiled import borrowing, compiled
-
-Floats = NDArray[np.float64]
 
 
 @borrowing
@@ -36,6 +34,15 @@ def gap(a: Floats, b: Floats) -> float:
 
 
 @borrowing
+def segment_square(x: float, y: float, x0: float, y0: float, dx: float, dy: float) -> float:
+    """Return the squared distance [m2] from a point to the segment from (x0, y0) to (x0 + dx, y0 + dy)."""
+    square = dx * dx + dy * dy
+    t = 0.0 if square < 1e-18 else min(1.0, max(0.0, (dx * (x - x0) + dy * (y - y0)) / square))
+    ex, ey = x - x0 - t * dx, y - y0 - t * dy
+    return ex * ex + ey * ey
+
+
+@borrowing
 def distance_to(x: float, y: float, polygon: Floats) -> float:
     """Return the distance [m] from a point to a convex polygon, 0 inside."""
     n = polygon.shape[0]
@@ -44,12 +51,9 @@ def distance_to(x: float, y: float, polygon: Floats) -> float:
     for k in range(n):
         x0, y0 = polygon[k, 0], polygon[k, 1]
         dx, dy = polygon[(k + 1) % n, 0] - x0, polygon[(k + 1) % n, 1] - y0
-        square = dx * dx + dy * dy
-        if square > 1e-18 and dx * (y - y0) - dy * (x - x0) < 0.0:
+        if dx * dx + dy * dy > 1e-18 and dx * (y - y0) - dy * (x - x0) < 0.0:
             inside = False
-        t = 0.0 if square < 1e-18 else min(1.0, max(0.0, (dx * (x - x0) + dy * (y - y0)) / square))
-        ex, ey = x - x0 - t * dx, y - y0 - t * dy
-        best = min(best, ex * ex + ey * ey)
+        best = min(best, segment_square(x, y, x0, y0, dx, dy))
     return 0.0 if inside else math.sqrt(best)
 
 

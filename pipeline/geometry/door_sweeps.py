@@ -4,12 +4,10 @@ import functools
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.geometry.prisms import BULGE, MARGIN, STEPS, Prisms, Sweep, covering, join_prisms
+from pipeline.arrays import Floats
+from pipeline.geometry.prisms import BULGE, MARGIN, STEPS, Prisms, Sweep, covering_prisms, join_prisms
 from pipeline.geometry.walls import LEAF_THICKNESS, Leaf
-
-Floats = NDArray[np.float64]
 
 ROOM = 0.01  # [m] about the leaf and its levers: what stands in a room need not stand nearer to its door, as units of a kitchen do to each other
 # A box around the levers: from the lock edge, out of each face, above the leaf's lower edge [m].
@@ -25,12 +23,12 @@ def leaf_sweep(leaf: Leaf, elevation: float) -> Sweep:
     step = 2 * math.acos(1.0 - BULGE / leaf.width)
     angles = np.linspace(0.0, leaf.angle, max(STEPS, math.ceil(leaf.angle / step)) + 1)
     posed = [_posed(leaf, elevation, angles, piece) for piece in _pieces(leaf)]
-    return Sweep(join_prisms([covering(np.concatenate([p[:-1], p[1:]], axis=1), margin=ROOM) for p in posed]), angles[1:])
+    return Sweep(join_prisms([covering_prisms(np.concatenate([p[:-1], p[1:]], axis=1), margin=ROOM) for p in posed]), angles[1:])
 
 
 def shut_leaf(leaf: Leaf, elevation: float) -> Prisms:
     """Return what a closed leaf and its levers take, and MARGIN about it: on both sides of the wall a drawer comes out before them."""
-    return join_prisms([covering(_posed(leaf, elevation, np.zeros(1), piece), margin=MARGIN) for piece in _pieces(leaf)])
+    return join_prisms([covering_prisms(_posed(leaf, elevation, np.zeros(1), piece), margin=MARGIN) for piece in _pieces(leaf)])
 
 
 def leaf_handles(leaf: Leaf) -> Floats:
@@ -51,13 +49,8 @@ def _pieces(leaf: Leaf) -> list[Floats]:
 def _posed(leaf: Leaf, elevation: float, angles: Floats, piece: Floats) -> Floats:
     """Return the corners (A, 8, 3) [m] of a piece, the leaf opened by `angles` (A,)."""
     start, end, out, low, high = piece.tolist()
-    flat = _outlines(leaf, angles, start, end, out)
-    return np.concatenate([np.dstack([flat, np.full(flat.shape[:2], elevation + z)]) for z in (low, high)], axis=1)
-
-
-def _outlines(leaf: Leaf, angles: Floats, start: float, end: float, out: float) -> Floats:
-    """Return the part (A, 4, 2) of the leaf from `start` to `end` [m from the hinge edge], thicker by `out`, opened by `angles` (A,)."""
     a, b, _, d = np.moveaxis(np.array([leaf.outline(float(angle)) for angle in angles]), 1, 0)
     along = (b - a) / np.maximum(np.linalg.norm(b - a, axis=1, keepdims=True), 1e-9)
     front = (a - d) / np.maximum(np.linalg.norm(a - d, axis=1, keepdims=True), 1e-9) * out
-    return np.stack([a + along * start + front, a + along * end + front, d + along * end - front, d + along * start - front], axis=1)
+    flat = np.stack([a + along * start + front, a + along * end + front, d + along * end - front, d + along * start - front], axis=1)
+    return np.concatenate([np.dstack([flat, np.full(flat.shape[:2], elevation + z)]) for z in (low, high)], axis=1)

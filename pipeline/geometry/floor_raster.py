@@ -9,12 +9,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Bools, Floats, Ints
 from pipeline.geometry.compiled import compiled
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+Mask = Bools
 
 FAR = 1 << 20  # cells: more than any raster has
 
@@ -39,11 +38,10 @@ class Raster:
         """Return a mask of False."""
         return np.zeros(self.shape, np.bool_)
 
-    def index(self, points: Floats) -> NDArray[np.int64]:
+    def index(self, points: Floats) -> Ints:
         """Return the cells (N, 2) in which points (N, 2) lie, clipped to the raster."""
         cells = np.floor((points - self.origin) / self.cell).astype(np.int64)
-        clipped: NDArray[np.int64] = np.clip(cells, 0, np.array(self.shape) - 1)
-        return clipped
+        return np.clip(cells, 0, np.array(self.shape) - 1)
 
     def fill(self, mask: Mask, polygons: Sequence[Floats], *, value: bool = True) -> Mask:
         """Set the cells whose centre lies in any of the (simple) polygons; returns the same mask."""
@@ -86,16 +84,14 @@ def fill(mask: Mask, polygon: Floats, value: bool) -> None:
 
 
 @compiled
-def fill_all(
-    mask: Mask, corners: Floats, count: NDArray[np.int64], which: NDArray[np.int64], origin: Floats, cell: float, value: bool
-) -> None:
+def fill_all(mask: Mask, corners: Floats, count: Ints, which: Ints, origin: Floats, cell: float, value: bool) -> None:
     """Set the cells whose centre lies in any of the polygons `which` of a batch (P, V, 2) [m], of whose corners `count` (P,) are used."""
     for k in which:
         fill(mask, (corners[k, : count[k]] - origin) / cell, value)
 
 
 @compiled
-def standing(free: Mask, radius_cells: float) -> Mask:
+def standing_cells(free: Mask, radius_cells: float) -> Mask:
     """Return the cells at which the centre of a disc of that radius can stand: all of it is free floor.
 
     No blocked cell, nor one beyond the raster, has its centre nearer than the radius and half a cell.

@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Opening, Room
 from pipeline.geometry.compiled import borrowing
-from pipeline.geometry.floor_raster import Mask, Raster, dilate, fill_all, standing
+from pipeline.geometry.floor_raster import Mask, Raster, dilate, fill_all, standing_cells
 from pipeline.geometry.prisms import Prisms
-
-Floats = NDArray[np.float64]
 
 PASSABLE = ("door", "open", "portal", "entrance")  # kinds of openings that one walks through
 
@@ -99,7 +98,7 @@ def passage(opening: Opening, depth: float, widest: float = np.inf) -> Floats:
 
 def standing_room(floor: Floor, free: Mask, radius: float) -> FreeSpace:
     """Find where on the `free` cells of a floor a robot of that radius [m] can stand, and which of it hangs together."""
-    labels, _ = ndimage.label(standing(free, radius / floor.raster.cell))
+    labels, _ = ndimage.label(standing_cells(free, radius / floor.raster.cell))
     return FreeSpace(floor, labels, radius / floor.raster.cell)
 
 

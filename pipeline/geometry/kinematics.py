@@ -4,35 +4,18 @@ Everything is in the object frame (origin bottom centre of the box at rest, fron
 """
 
 import math
-from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.entities.asset import Asset, Joint, JointType, Link
+from pipeline.arrays import Floats
+from pipeline.entities.asset import Asset, Joint, Link
 from pipeline.geometry.memo import cached_on_asset
 
 HANDLES = ("line_fixed_handle", "round_fixed_handle", "hinge_handle")  # part classes that a hand takes hold of
 OPENERS = ("hinge_door", "slider_drawer", "hinge_lid", "slider_lid")  # part classes that open something
 
 
-class Axis(Protocol):
-    """What a joint moves about or along: unit `axis` (3,) through `origin` (3,), at rest."""
-
-    @property
-    def type(self) -> JointType:
-        """Whether it turns or slides."""
-
-    @property
-    def axis(self) -> NDArray[np.float64]:
-        """Unit direction (3,)."""
-
-    @property
-    def origin(self) -> NDArray[np.float64]:
-        """A point (3,) on it."""
-
-
-def joint_motion(joint: Axis, position: float) -> NDArray[np.float64]:
+def joint_motion(joint: Joint, position: float) -> Floats:
     """Return the transform (4, 4) by which `joint` alone moves its child from rest, at `position` [rad, or units of `origin`]."""
     T = np.eye(4)
     if joint.type == "prismatic":
@@ -43,15 +26,25 @@ def joint_motion(joint: Axis, position: float) -> NDArray[np.float64]:
     return T
 
 
-def rotation(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+def rotation(axis: Floats, angle: float) -> Floats:
     """Return the rotation matrix (3, 3) about a unit `axis` (3,) by `angle` [rad] (Rodrigues' formula)."""
     x, y, z = axis
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    turned: NDArray[np.float64] = np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K)
-    return turned
+    return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
 
 
-def link_transforms(asset: Asset, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+def points_under(motions: Floats, points: Floats) -> Floats:
+    """Return points (N, 3) under each of S maps (S, 4, 4): (S, N, 3)."""
+    return np.asarray(np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3])
+
+
+def axis_distances(joint: Joint, points: Floats) -> Floats:
+    """Return how far points (N, 3) are from the axis of a joint (N,)."""
+    away = points - joint.origin
+    return np.asarray(np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1))
+
+
+def link_transforms(asset: Asset, positions: Floats) -> Floats:
     """Return T (L, 4, 4) that carries each link's points from rest to joint `positions` (J,) [rad or m]."""
     T = np.broadcast_to(np.eye(4), (len(asset.links), 4, 4)).copy()
     for joint, position in zip(asset.joints, positions, strict=True):
@@ -75,7 +68,7 @@ def moved_links(asset: Asset, joint_index: int) -> list[int]:
     return moved
 
 
-def link_points(link: Link) -> NDArray[np.float64]:
+def link_points(link: Link) -> Floats:
     """Return the vertices (V, 3) [m, object frame at rest] of a link's colliders, or of its visuals if it has none."""
     meshes = link.colliders or link.visuals
     if not meshes:
@@ -83,7 +76,7 @@ def link_points(link: Link) -> NDArray[np.float64]:
     return np.concatenate([np.asarray(m.vertices, np.float64) for m in meshes])
 
 
-def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> NDArray[np.float64]:
+def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> Floats:
     """Return the box (2, 3) [m, object frame], lower and upper corner, of all that a joint moves over its range.
 
     Other joints stay at 0. `steps` positions are taken; what an arc bulges between them is added.
@@ -95,17 +88,15 @@ def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> NDArray[np.floa
     lower, upper = joint_range(joint)
     positions = np.linspace(lower, upper, max(steps, 2))
     motions = np.stack([joint_motion(joint, q) for q in positions])
-    moved = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
+    moved = points_under(motions, points)
     corners = np.stack([moved.min((0, 1)), moved.max((0, 1))])
     if joint.type != "prismatic":
-        away = points - joint.origin
-        radius = np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1).max()
-        bulge = radius * (1.0 - math.cos((positions[1] - positions[0]) / 2)) * np.sqrt(1.0 - joint.axis**2)
+        bulge = axis_distances(joint, points).max() * (1.0 - math.cos((positions[1] - positions[0]) / 2)) * np.sqrt(1.0 - joint.axis**2)
         corners += np.stack([-bulge, bulge])
     return corners
 
 
-def handle_point(asset: Asset, joint_index: int) -> NDArray[np.float64]:
+def handle_point(asset: Asset, joint_index: int) -> Floats:
     """Return where a hand takes hold (3,) [m, object frame at rest].
 
     The middle of the handle that moves with the joint, by the box of that part or its mesh; without one, for a slider
@@ -125,16 +116,12 @@ def handle_point(asset: Asset, joint_index: int) -> NDArray[np.float64]:
     if joint.type == "prismatic":
         middle = _middle(points)
         ahead = float(((points - middle) @ joint.axis).max())
-        face: NDArray[np.float64] = middle + joint.axis * ahead
-        return face
-    away = points - joint.origin
-    radial = away - np.outer(away @ joint.axis, joint.axis)
-    radius = np.linalg.norm(radial, axis=1)
-    far: NDArray[np.float64] = points[radius > 0.98 * radius.max()].mean(0)
-    return far
+        return middle + joint.axis * ahead
+    radius = axis_distances(joint, points)
+    return np.asarray(points[radius > 0.98 * radius.max()].mean(0))
 
 
-def opening_direction(asset: Asset, joint_index: int) -> NDArray[np.float64]:
+def opening_direction(asset: Asset, joint_index: int) -> Floats:
     """Return the unit direction (3,) in which the handle starts to move when the joint opens [object frame]."""
     joint = asset.joints[joint_index]
     if joint.type == "prismatic":
@@ -144,7 +131,7 @@ def opening_direction(asset: Asset, joint_index: int) -> NDArray[np.float64]:
     return start / length if length > 1e-9 else np.array([0.0, -1.0, 0.0])
 
 
-def facing(asset: Asset, joint_index: int) -> NDArray[np.float64]:
+def facing(asset: Asset, joint_index: int) -> Floats:
     """Return the plan direction (2,) from which a part is opened [object frame]: where its handle sets off to.
 
     For what opens upwards or down, or slides in its own plane, it is the object's front.
@@ -158,11 +145,10 @@ def facing(asset: Asset, joint_index: int) -> NDArray[np.float64]:
 
 
 @cached_on_asset
-def grips(asset: Asset) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]:
+def grips(asset: Asset) -> tuple[tuple[Floats, Floats], ...]:
     """Return `handle_point` and `facing` of every joint."""
     return tuple((handle_point(asset, k), facing(asset, k)) for k in range(len(asset.joints)))
 
 
-def _middle(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    middle: NDArray[np.float64] = (points.min(0) + points.max(0)) / 2
-    return middle
+def _middle(points: Floats) -> Floats:
+    return np.asarray((points.min(0) + points.max(0)) / 2)

@@ -12,6 +12,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Plan
 from pipeline.geometry.tiling import convex_cover, convex_pieces
 from pipeline.geometry.walls import SLAB, Cut, Prism, Shell
@@ -40,7 +41,8 @@ def _bands(kind: str, cuts: Sequence[Cut], built: Shell, heights: Callable[[Cut]
         group.sort(key=lambda cut: float(cut.quad.mean(axis=0) @ along))
         run = group[0].quad
         for cut in group[1:]:
-            longer = _spanning_rectangle(run, cut.quad)
+            around = shapely.minimum_rotated_rectangle(shapely.convex_hull(shapely.MultiPoint(np.concatenate([run, cut.quad]))))
+            longer = np.asarray(shapely.geometry.polygon.orient(around).exterior.coords)[:-1]
             if _solid(longer, bottom, top, built):
                 run = longer
             else:
@@ -59,14 +61,7 @@ def _line(cut: Cut) -> tuple[float, ...]:
     return tuple(np.round([*along, across.min(), across.max()], 4).tolist())
 
 
-def _spanning_rectangle(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the rectangle (4, 2) over two of the same wall."""
-    hull = shapely.convex_hull(shapely.MultiPoint(np.concatenate([first, second])))
-    box = shapely.geometry.polygon.orient(shapely.minimum_rotated_rectangle(hull))
-    return np.asarray(box.exterior.coords)[:-1]
-
-
-def _solid(quad: NDArray[np.float64], bottom: float, top: float, built: Shell) -> bool:
+def _solid(quad: Floats, bottom: float, top: float, built: Shell) -> bool:
     """Whether nothing but wall is in the quad (4, 2) between two heights."""
     wall, holes = _wall_between(built, bottom, top)
     around = Polygon(quad)

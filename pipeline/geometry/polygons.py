@@ -6,12 +6,10 @@ A room polygon is (n, 2) [m], counter-clockwise, simple, not closed, not necessa
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.geometry.compiled import borrowing, compiled
-from pipeline.geometry.convex import gap
-
-Floats = NDArray[np.float64]
+from pipeline.geometry.convex import gap, segment_square
 
 SKIN = 0.05  # thickness given to walls where a shape's crossing is tested [m]; thinner than any wall
 
@@ -36,11 +34,7 @@ def boundary_distance(x: float, y: float, polygon: Floats) -> float:
     n = polygon.shape[0]
     for k in range(n):
         x0, y0 = polygon[k, 0], polygon[k, 1]
-        dx, dy = polygon[(k + 1) % n, 0] - x0, polygon[(k + 1) % n, 1] - y0
-        square = dx * dx + dy * dy
-        t = 0.0 if square < 1e-18 else min(1.0, max(0.0, (dx * (x - x0) + dy * (y - y0)) / square))
-        ex, ey = x - x0 - t * dx, y - y0 - t * dy
-        best = min(best, ex * ex + ey * ey)
+        best = min(best, segment_square(x, y, x0, y0, polygon[(k + 1) % n, 0] - x0, polygon[(k + 1) % n, 1] - y0))
     return math.sqrt(best)
 
 

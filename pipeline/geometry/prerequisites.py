@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset
 from pipeline.geometry.contact import first_hits, group_boxes
 from pipeline.geometry.kinematics import OPENERS, joint_motion, joint_range, link_points, moved_links, sweep_box
@@ -13,7 +13,6 @@ from pipeline.geometry.prisms import Prisms, join_prisms, prism, sweep_of
 
 TOUCH = 0.005  # parts that are in each other by no more do not block each other [m]
 HELD = ("hinge_handle", "hinge_knob", "slider_button")  # what a hand takes hold of waits for nothing
-Floats = NDArray[np.float64]
 
 
 def with_prerequisites(asset: Asset) -> Asset:
@@ -22,7 +21,7 @@ def with_prerequisites(asset: Asset) -> Asset:
     A joint waits for a door, drawer or lid whose parts lie in its way at rest, and do so no more once that is open. Parts
     that are in each other at rest tell nothing, nor do two that would wait for each other.
     """
-    waits = waiting(asset)
+    waits = find_prerequisites(asset)
     if not any(waits):
         return asset
     joints = asset.joints
@@ -30,12 +29,12 @@ def with_prerequisites(asset: Asset) -> Asset:
     return replace(asset, joints=named)
 
 
-def waiting(asset: Asset) -> list[tuple[int, ...]]:
+def find_prerequisites(asset: Asset) -> list[tuple[int, ...]]:
     """Return for each joint of an asset the indices of the joints that it waits for."""
     joints = asset.joints
     moved = [moved_links(asset, k) for k in range(len(joints))]
     points = [np.concatenate([link_points(asset.links[i]) for i in links]) for links in moved]
-    rest = [_box(own) for own in points]
+    rest = [np.stack([own.min(0, initial=np.inf), own.max(0, initial=-np.inf)]) for own in points]
     prerequisites: list[set[int]] = [set() for _ in joints]
     for k, joint in enumerate(joints):
         if joint.part_class in HELD:
@@ -44,7 +43,11 @@ def waiting(asset: Asset) -> list[tuple[int, ...]]:
         sweep: Prisms | None = None
         for i, other in enumerate(joints):
             related = i == k or other.child in moved[k] or joint.child in moved[i]
-            if related or other.part_class not in OPENERS or not _overlap(way, rest[i]):
+            if (
+                related
+                or other.part_class not in OPENERS
+                or not (np.minimum(way[1], rest[i][1]) - np.maximum(way[0], rest[i][0]) > TOUCH).all()
+            ):
                 continue
             sweep = sweep if sweep is not None else sweep_of(asset, k).prisms
             at_rest, opened = (_links(asset, moved[i], joint_motion(other, q)) for q in (0.0, joint_range(other)[1]))
@@ -66,11 +69,3 @@ def _meet(a: Prisms, b: Prisms) -> bool:
     alone = np.full(len(a), -1)
     hits = first_hits(a.corners, a.count, a.z, a.boxes(), alone, b.corners, b.count, b.z, b.boxes(), start, group_boxes(b, start), TOUCH)
     return bool((hits >= 0).any())
-
-
-def _box(points: Floats) -> Floats:
-    return np.stack([points.min(0), points.max(0)]) if len(points) else np.array([[np.inf] * 3, [-np.inf] * 3])
-
-
-def _overlap(a: Floats, b: Floats) -> bool:
-    return bool(np.all(np.minimum(a[1], b[1]) - np.maximum(a[0], b[0]) > TOUCH))

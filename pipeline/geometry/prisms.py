@@ -12,15 +12,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.entities.asset import Asset, Joint, Link
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.convex import hull
-from pipeline.geometry.kinematics import joint_motion, joint_range, moved_links
+from pipeline.geometry.kinematics import axis_distances, joint_motion, joint_range, moved_links, points_under
 from pipeline.geometry.memo import cached_on_asset
-
-Floats = NDArray[np.float64]
 
 CORNERS = 12  # vertices kept per prism; rounder ones are covered by a polygon of that many sides
 STEPS = 12  # least number of positions per joint
@@ -35,17 +33,16 @@ class Prisms:
     """P upright prisms: `corners` (P, CORNERS, 2) [m] of which `count` (P,) are used, `z` (P, 2) [m], `part` (P,)."""
 
     corners: Floats
-    count: NDArray[np.int64]
+    count: Ints
     z: Floats
-    part: NDArray[np.int64]
+    part: Ints
 
     def __len__(self) -> int:
         return len(self.count)
 
     def polygon(self, i: int) -> Floats:
         """Return the plan polygon (n, 2) of prism i."""
-        corners: Floats = self.corners[i, : self.count[i]]
-        return corners
+        return self.corners[i, : self.count[i]]
 
     def placed(self, position: Floats, yaw: float, scale: Floats) -> Prisms:
         """Return the prisms in the world: scaled, turned by `yaw` [rad], moved to `position` (3,) [m]."""
@@ -108,21 +105,16 @@ def join_prisms(groups: list[Prisms]) -> Prisms:
     """Join groups of prisms into one."""
     if not groups:
         return Prisms(np.zeros((0, CORNERS, 2)), np.zeros(0, np.int64), np.zeros((0, 2)), np.zeros(0, np.int64))
-    return Prisms(
-        np.concatenate([g.corners for g in groups]),
-        np.concatenate([g.count for g in groups]),
-        np.concatenate([g.z for g in groups]),
-        np.concatenate([g.part for g in groups]),
-    )
+    return Prisms(*map(np.concatenate, zip(*((g.corners, g.count, g.z, g.part) for g in groups), strict=True)))
 
 
 def prism(points: Floats, part: int = 0) -> Prisms | None:
     """Return the one prism that covers points (N, 3), or None when their projection is degenerate."""
-    cover = covering(np.asarray(points, np.float64)[None], part)
+    cover = covering_prisms(np.asarray(points, np.float64)[None], part)
     return cover if len(cover) else None
 
 
-def covering(points: Floats, first: int = 0, margin: float = 0.0) -> Prisms:
+def covering_prisms(points: Floats, first: int = 0, margin: float = 0.0) -> Prisms:
     """Return the prisms that cover sets of points (S, N, 3), parts `first` and following; none where a projection is degenerate.
 
     They reach `margin` [m] farther in plan, along both axes; not in height, for what moves lies between boards and on desks.
@@ -133,7 +125,7 @@ def covering(points: Floats, first: int = 0, margin: float = 0.0) -> Prisms:
 
 
 @compiled
-def _cover(points: Floats, margin: float) -> tuple[Floats, NDArray[np.int64], Floats]:
+def _cover(points: Floats, margin: float) -> tuple[Floats, Ints, Floats]:
     """Return corners (S, CORNERS, 2), their number, 0 where degenerate, and z (S, 2) of prisms over points (S, N, 3)."""
     sets = points.shape[0]
     corners, count, z = np.zeros((sets, CORNERS, 2)), np.zeros(sets, np.int64), np.zeros((sets, 2))
@@ -186,17 +178,11 @@ def sweep_of(asset: Asset, index: int, margin: float = 0.0) -> Sweep:
         motions = np.stack([joint_motion(joint, float(q)) for q in positions])
         tangents = None if joint.type == "prismatic" else _tangents(joint, positions)
         for points in pieces:
-            moved = _moved(motions, points)
-            between = [] if tangents is None else [_moved(tangents, points)]
-            groups.append(covering(np.concatenate([moved[:-1], moved[1:], *between], axis=1), len(reached), margin))
+            moved = points_under(motions, points)
+            between = [] if tangents is None else [points_under(tangents, points)]
+            groups.append(covering_prisms(np.concatenate([moved[:-1], moved[1:], *between], axis=1), len(reached), margin))
         reached += positions[1:].tolist()
     return Sweep(join_prisms(groups), np.array(reached))
-
-
-def _moved(motions: Floats, points: Floats) -> Floats:
-    """Return points (N, 3) under each of S maps: (S, N, 3)."""
-    moved: Floats = np.einsum("kij,pj->kpi", motions[:, :3, :3], points) + motions[:, None, :3, 3]
-    return moved
 
 
 def _tangents(joint: Joint, positions: Floats) -> Floats:
@@ -211,8 +197,7 @@ def _tangents(joint: Joint, positions: Floats) -> Floats:
 def _steps(joint: Joint, limit: float, pieces: list[Floats]) -> int:
     if joint.type == "prismatic" or not pieces:
         return STEPS
-    away = np.concatenate(pieces) - joint.origin
-    radius = float(np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1).max())
+    radius = float(axis_distances(joint, np.concatenate(pieces)).max())
     step = 2 * math.acos(max(0.0, 1.0 - BULGE / max(radius, BULGE)))
     return min(MOST_STEPS, max(STEPS, math.ceil(abs(limit) / max(step, 1e-6))))
 

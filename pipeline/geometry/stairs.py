@@ -11,8 +11,8 @@ from typing import Literal
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Plan, Room
 
 RISE = 0.2  # of a step, at most [m]
@@ -21,26 +21,21 @@ LANDING = 0.15  # how far landings reach beside their opening [m]
 NEWEL = 0.12  # side of the post that steps wind about [m]
 RAIL, RAIL_HEIGHT = 0.05, 0.95  # thickness and height of the balustrade beside a landing [m]
 
-Ring = NDArray[np.float64]
-
 
 @dataclass(frozen=True, slots=True)
 class Step:
     """A convex upright solid of a staircase: `polygon` (n, 2) [m] counter-clockwise, z from `bottom` to `top` above its storey's floor."""
 
     kind: Literal["step", "landing", "rail", "newel"]
-    polygon: Ring
+    polygon: Floats
     bottom: float
     top: float
 
 
 def steps(plan: Plan, level: int) -> tuple[Step, ...]:
     """Return the landings on a storey with their balustrades, and the flights that lead up from it."""
-    pieces: list[Step] = []
-    for room in plan.rooms:
-        if room.type == "staircase" and level in plan.levels_of(room):
-            pieces.extend(_storey(plan, room, level))
-    return tuple(pieces)
+    staircases = [room for room in plan.rooms if room.type == "staircase" and level in plan.levels_of(room)]
+    return tuple(step for room in staircases for step in _storey(plan, room, level))
 
 
 def visible_steps(plan: Plan, level: int) -> tuple[Step, ...]:
@@ -84,7 +79,7 @@ def _storey(plan: Plan, room: Room, level: int) -> list[Step]:
 class _Well:
     """A convex shaft, measured along its wall: a place is a length from its first corner, counter-clockwise, modulo the whole."""
 
-    def __init__(self, polygon: Ring) -> None:
+    def __init__(self, polygon: Floats) -> None:
         self.corners = polygon
         self.ring = shapely.LinearRing(polygon)
         self.length = float(self.ring.length)
@@ -92,12 +87,11 @@ class _Well:
         sides = np.linalg.norm(np.roll(polygon, -1, axis=0) - polygon, axis=1)
         self.places = np.concatenate([[0.0], np.cumsum(sides)[:-1]])
 
-    def project(self, point: Ring) -> float:
+    def project(self, point: Floats) -> float:
         return float(self.ring.project(shapely.Point(point)))
 
-    def point(self, place: float) -> Ring:
-        position: Ring = np.asarray(self.ring.interpolate(place % self.length).coords)[0]
-        return position
+    def point(self, place: float) -> Floats:
+        return np.asarray(np.asarray(self.ring.interpolate(place % self.length).coords)[0])
 
     def way(self, a: float, half_a: float, b: float, half_b: float, turn: int) -> float:
         """Return the length of wall from the landing at a to the one at b, turning that way; landings may lie above each other."""
@@ -105,7 +99,7 @@ class _Well:
         ends = half_a + half_b
         return apart - ends if apart >= ends else apart + self.length - ends
 
-    def sector(self, low: float, high: float) -> Ring:
+    def sector(self, low: float, high: float) -> Floats:
         """Return the piece of the shaft between the middle and the wall from `low` to `high`."""
         between = sorted(
             (p + n * self.length, i)
@@ -115,9 +109,8 @@ class _Well:
         )
         return np.array([self.middle, self.point(low), *(self.corners[i] for _, i in between), self.point(high)])
 
-    def rail(self, place: float) -> Ring:
+    def rail(self, place: float) -> Floats:
         """Return the balustrade from the wall at a place to the middle, upright on both."""
         line = shapely.LineString([self.point(place), self.middle]).buffer(RAIL / 2, cap_style="flat")
         inside = shapely.geometry.polygon.orient(line.intersection(shapely.Polygon(self.corners)))
-        ring: Ring = np.asarray(inside.exterior.coords)[:-1]
-        return ring
+        return np.asarray(inside.exterior.coords)[:-1]

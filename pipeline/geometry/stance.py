@@ -6,26 +6,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.convex import distance_to
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.prisms import Prisms
 from pipeline.geometry.robot import Robot
 
-Floats = NDArray[np.float64]
-
 DISTANCES = 11  # distances to the handle that are tried
 TURN = 15.0  # between the sides that are tried [deg]
 
 
 def stand_pose(
-    grip: Floats,
-    heading: Floats,
-    swept: Prisms,
-    floor: float,
-    space: FreeSpace,
-    label: int,
-    robot: Robot,
+    grip: Floats, heading: Floats, swept: Prisms, floor: float, space: FreeSpace, label: int, robot: Robot
 ) -> tuple[float, float] | None:
     """Return (x, y) [m] at which the robot, within one connected part of the floor, reaches the grip; None if nowhere.
 
@@ -36,21 +29,10 @@ def stand_pose(
     distances, turns = _search_grid(robot.reach, robot.cone)
     low = np.flatnonzero(swept.z[:, 0] < robot.band(floor)[1])
     raster = space.floor.raster
-    x, y, found = _search(
-        float(grip[0]),
-        float(grip[1]),
-        math.atan2(float(heading[1]), float(heading[0])),
-        distances,
-        turns,
-        space.labels,
-        label,
-        raster.origin,
-        raster.cell,
-        np.ascontiguousarray(swept.corners[low]),
-        swept.count[low],
-        robot.radius,
-    )
-    return (x, y) if found else None
+    corners, count = np.ascontiguousarray(swept.corners[low]), swept.count[low]
+    x, y, angle = float(grip[0]), float(grip[1]), math.atan2(float(heading[1]), float(heading[0]))
+    x, y, stands = _search(x, y, angle, distances, turns, space.labels, label, raster.origin, raster.cell, corners, count, robot.radius)
+    return (x, y) if stands else None
 
 
 @functools.lru_cache(maxsize=16)
@@ -74,7 +56,7 @@ def _search(
     origin: Floats,
     cell: float,
     corners: Floats,
-    count: NDArray[np.int64],
+    count: Ints,
     radius: float,
 ) -> tuple[float, float, bool]:
     if label == 0:

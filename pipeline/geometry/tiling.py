@@ -1,27 +1,24 @@
 """Convex tilings and covers of plan polygons: rectangles where all edges are axis-parallel, merged triangles elsewhere."""
 
+import itertools
+
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
+
+from pipeline.arrays import Bools, Floats
 
 GRID = 1e-5  # coordinates closer than this are one [m]; poses and plans are rounded to 1e-4
 
 
-def convex_pieces(region: Polygon | MultiPolygon) -> list[NDArray[np.float64]]:
+def convex_pieces(region: Polygon | MultiPolygon) -> list[Floats]:
     """Tile `region` [m] with convex polygons (n, 2), counter-clockwise, that meet at their edges only."""
-    pieces: list[NDArray[np.float64]] = []
-    for part in polygons(region):
-        pieces.extend(_rectangles(part) if _rectilinear(part) else _merged_triangles(part))
-    return pieces
+    return [piece for part in polygons(region) for piece in (_rectangles(part) if _rectilinear(part) else _merged_triangles(part))]
 
 
-def convex_cover(region: Polygon | MultiPolygon) -> list[NDArray[np.float64]]:
+def convex_cover(region: Polygon | MultiPolygon) -> list[Floats]:
     """Return convex polygons (n, 2), counter-clockwise, whose union is `region` [m]: fewer than tile it, for they may overlap."""
-    pieces: list[NDArray[np.float64]] = []
-    for part in polygons(region):
-        pieces.extend(_cover(part) if _rectilinear(part) else _merged_triangles(part))
-    return pieces
+    return [piece for part in polygons(region) for piece in (_cover(part) if _rectilinear(part) else _merged_triangles(part))]
 
 
 def polygons(region: shapely.Geometry) -> list[Polygon]:
@@ -30,7 +27,7 @@ def polygons(region: shapely.Geometry) -> list[Polygon]:
     return sorted(parts, key=lambda p: (p.bounds, p.area))
 
 
-def _rings(part: Polygon) -> list[NDArray[np.float64]]:
+def _rings(part: Polygon) -> list[Floats]:
     return [np.asarray(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
 
 
@@ -39,10 +36,10 @@ def _rectilinear(part: Polygon) -> bool:
     return bool(np.all(steps.min(axis=1) < GRID))
 
 
-def _rectangles(part: Polygon) -> list[NDArray[np.float64]]:
+def _rectangles(part: Polygon) -> list[Floats]:
     """Tile an axis-parallel polygon greedily: at each free grid cell, the larger of the row-first and column-first run."""
     xs, ys, free = _cells(part)
-    rectangles: list[NDArray[np.float64]] = []
+    rectangles: list[Floats] = []
     while free.any():
         blocks = _grow_blocks(free, *map(int, np.argwhere(free)[0]))
         i, j, i1, j1 = block = max(blocks, key=lambda b: (xs[b[2]] - xs[b[0]]) * (ys[b[3]] - ys[b[1]]))
@@ -51,7 +48,7 @@ def _rectangles(part: Polygon) -> list[NDArray[np.float64]]:
     return rectangles
 
 
-def _cells(part: Polygon) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+def _cells(part: Polygon) -> tuple[Floats, Floats, Bools]:
     """Return the x and the y of an axis-parallel polygon's corners, and which cells between them (X - 1, Y - 1) are inside."""
     points = np.concatenate(_rings(part))
     xs, ys = _ticks(points[:, 0]), _ticks(points[:, 1])
@@ -59,12 +56,12 @@ def _cells(part: Polygon) -> tuple[NDArray[np.float64], NDArray[np.float64], NDA
     return xs, ys, shapely.contains_xy(part, cx, cy)
 
 
-def _rectangle(xs: NDArray[np.float64], ys: NDArray[np.float64], block: tuple[int, int, int, int]) -> NDArray[np.float64]:
+def _rectangle(xs: Floats, ys: Floats, block: tuple[int, int, int, int]) -> Floats:
     i, j, i1, j1 = block
     return np.array([[xs[i], ys[j]], [xs[i1], ys[j]], [xs[i1], ys[j1]], [xs[i], ys[j1]]])
 
 
-def _cover(part: Polygon) -> list[NDArray[np.float64]]:
+def _cover(part: Polygon) -> list[Floats]:
     """Cover an axis-parallel polygon greedily by rectangles that cannot grow: each time the one over most of what is left."""
     xs, ys, inside = _cells(part)
     blocks = sorted({block for cell in np.argwhere(inside) for block in _grow_blocks(inside, *map(int, cell))})
@@ -78,7 +75,7 @@ def _cover(part: Polygon) -> list[NDArray[np.float64]]:
     return chosen
 
 
-def _grow_blocks(inside: NDArray[np.bool_], i: int, j: int) -> list[tuple[int, int, int, int]]:
+def _grow_blocks(inside: Bools, i: int, j: int) -> list[tuple[int, int, int, int]]:
     """Return the blocks (i, j, i1, j1; ends exclusive) about a cell that grow along the rows first, and along the columns first."""
     blocks = []
     for turned in (False, True):
@@ -97,33 +94,25 @@ def _grow_blocks(inside: NDArray[np.bool_], i: int, j: int) -> list[tuple[int, i
     return blocks
 
 
-def _ticks(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _ticks(values: Floats) -> Floats:
     ordered = np.sort(values)
-    kept: NDArray[np.float64] = ordered[np.concatenate([[True], np.diff(ordered) > GRID])]
-    return kept
+    return np.asarray(ordered[np.concatenate([[True], np.diff(ordered) > GRID])])
 
 
-def _merged_triangles(part: Polygon) -> list[NDArray[np.float64]]:
+def _merged_triangles(part: Polygon) -> list[Floats]:
     """Tile any polygon: constrained Delaunay triangles, merged while the union stays convex (Hertel and Mehlhorn 1983)."""
     triangles = polygons(shapely.constrained_delaunay_triangles(part))
     pieces = [np.asarray(shapely.geometry.polygon.orient(t).exterior.coords)[:-1] for t in triangles]
-    merged = True
-    while merged:
-        merged = False
-        for i in range(len(pieces)):
-            for j in range(i + 1, len(pieces)):
-                union = _merge(pieces[i], pieces[j])
-                if union is not None:
-                    pieces[i] = union
-                    del pieces[j]
-                    merged = True
-                    break
-            if merged:
-                break
-    return pieces
+    while True:
+        pairs = itertools.combinations(range(len(pieces)), 2)
+        merged = next(((i, j, union) for i, j in pairs if (union := _merge(pieces[i], pieces[j])) is not None), None)
+        if merged is None:
+            return pieces
+        i, j, pieces[i] = merged
+        del pieces[j]
 
 
-def _merge(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64] | None:
+def _merge(a: Floats, b: Floats) -> Floats | None:
     """Join two counter-clockwise convex polygons along a shared edge, if the result is convex."""
     near = np.linalg.norm(a[:, None] - b[None], axis=2) < GRID
     for i in range(len(a)):
@@ -134,6 +123,5 @@ def _merge(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64
                 before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
                 turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
                 if np.all(turn > -1e-9):
-                    kept: NDArray[np.float64] = ring[np.abs(turn) > 1e-9]
-                    return kept
+                    return np.asarray(ring[np.abs(turn) > 1e-9])
     return None

@@ -10,9 +10,9 @@ from typing import Literal
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import LineString, Polygon
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Opening, Plan, Room
 from pipeline.geometry.stairs import Step, steps
 from pipeline.geometry.tiling import convex_pieces, polygons
@@ -28,7 +28,7 @@ class Cut:
     """The hole of an opening. `quad` (4, 2): from the segment's start, on its right, counter-clockwise around the hole."""
 
     opening: Opening
-    quad: NDArray[np.float64]
+    quad: Floats
     bottom: float
     top: float
 
@@ -38,7 +38,7 @@ class Prism:
     """A convex upright solid: `polygon` (n, 2) counter-clockwise, from z = `bottom` to `top`."""
 
     kind: Literal["wall", "lintel", "sill", "floor", "ceiling"]
-    polygon: NDArray[np.float64]
+    polygon: Floats
     bottom: float
     top: float
     opening_id: str = ""
@@ -49,7 +49,7 @@ class Panel:
     """A flat visible face: `corners` (n, 3) counter-clockwise from its visible side; `owner` a room, "" outside, or an opening."""
 
     owner: str
-    corners: NDArray[np.float64]
+    corners: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,9 +62,9 @@ class Leaf:
     """
 
     opening_id: str
-    hinge: NDArray[np.float64]
-    along: NDArray[np.float64]
-    normal: NDArray[np.float64]
+    hinge: Floats
+    along: Floats
+    normal: Floats
     turn: int
     angle: float
     width: float
@@ -74,7 +74,7 @@ class Leaf:
     back: float
     clear: float
 
-    def outline(self, angle: float = 0.0) -> NDArray[np.float64]:
+    def outline(self, angle: float = 0.0) -> Floats:
         """Return the leaf's rectangle (4, 2) in plan, opened by `angle` [rad]."""
         c, s = np.cos(angle), np.sin(angle)
         along, normal = c * self.along + s * self.normal, c * self.normal - s * self.along
@@ -106,7 +106,7 @@ def levels(plan: Plan) -> list[int]:
 
 
 @functools.lru_cache(256)
-def floor_pieces(room: Room) -> list[NDArray[np.float64]]:
+def floor_pieces(room: Room) -> list[Floats]:
     """Tile a room's floor with convex polygons (n, 2)."""
     return convex_pieces(Polygon(room.polygon))
 
@@ -130,21 +130,15 @@ def shell(plan: Plan, level: int) -> Shell:
             prisms.append(Prism("lintel", cut.quad, cut.top, top, cut.opening.opening_id))
         if cut.bottom > 1e-3:
             prisms.append(Prism("sill", cut.quad, 0.0, cut.bottom, cut.opening.opening_id))
-    leaves = tuple(leaf for cut in cuts if (leaf := _leaf(cut, inner)) is not None)
+    leaves = tuple(leaf for cut in cuts if (leaf := _leaf(cut, inner)))
     return Shell(height, top, outline, region, cuts, tuple(prisms), leaves, steps(plan, level))
 
 
 @functools.lru_cache(64)
 def leaves(plan: Plan) -> tuple[Leaf, ...]:
     """Return the door leaves of all storeys, in the order of the openings, without building walls."""
-    doors = []
-    for opening in plan.openings:
-        if opening.swing is not None:
-            inner = {room.room_id: Polygon(room.polygon) for room in plan.rooms if room.room_id in opening.rooms}
-            leaf = _leaf(_cut(opening, inner, plan), inner)
-            if leaf is not None:
-                doors.append(leaf)
-    return tuple(doors)
+    swung = [(o, {r.room_id: Polygon(r.polygon) for r in plan.rooms if r.room_id in o.rooms}) for o in plan.openings if o.swing]
+    return tuple(leaf for o, inner in swung if (leaf := _leaf(_cut(o, inner, plan), inner)))
 
 
 def room_panels(room: Room, cuts: tuple[Cut, ...], height: float = 0.0) -> list[Panel]:
@@ -176,7 +170,7 @@ def reveals(cut: Cut) -> list[Panel]:
     return panels
 
 
-def _side(segment: NDArray[np.float64], polygon: Polygon) -> tuple[int, float]:
+def _side(segment: Floats, polygon: Polygon) -> tuple[int, float]:
     """Return on which side of the segment (+1 left, -1 right) a room lies, and how far its face is from the centre line."""
     middle = segment.mean(axis=0)
     normal = _left_normal(segment)
@@ -190,10 +184,9 @@ def _side(segment: NDArray[np.float64], polygon: Polygon) -> tuple[int, float]:
     return (1 if (centre - middle) @ normal > 0 else -1), float(polygon.distance(shapely.Point(middle)))
 
 
-def _left_normal(segment: NDArray[np.float64]) -> NDArray[np.float64]:
+def _left_normal(segment: Floats) -> Floats:
     along = segment[1] - segment[0]
-    normal: NDArray[np.float64] = np.array([-along[1], along[0]]) / np.linalg.norm(along)
-    return normal
+    return np.asarray(np.array([-along[1], along[0]]) / np.linalg.norm(along))
 
 
 def _cut(opening: Opening, inner: dict[str, Polygon], plan: Plan) -> Cut:
@@ -228,23 +221,11 @@ def _leaf(cut: Cut, inner: dict[str, Polygon]) -> Leaf | None:
     turn = 1 if along[0] * normal[1] - along[1] * normal[0] > 0 else -1
     right, left = (float(np.linalg.norm(cut.quad[k] - opening.segment[0])) for k in (0, 3))
     front, back = (left, right) if side > 0 else (right, left)
-    return Leaf(
-        opening.opening_id,
-        hinge,
-        along,
-        normal,
-        turn,
-        swing.angle,
-        opening.width - 2 * LEAF_GAP,
-        cut.bottom + LEAF_GAP,
-        cut.top - LEAF_GAP,
-        front,
-        back,
-        opening.width,
-    )
+    width, bottom, top = opening.width - 2 * LEAF_GAP, cut.bottom + LEAF_GAP, cut.top - LEAF_GAP
+    return Leaf(opening.opening_id, hinge, along, normal, turn, swing.angle, width, bottom, top, front, back, opening.width)
 
 
-def _ring_panels(owner: str, ring: NDArray[np.float64], cuts: tuple[Cut, ...], height: float) -> list[Panel]:
+def _ring_panels(owner: str, ring: Floats, cuts: tuple[Cut, ...], height: float) -> list[Panel]:
     """Return the upright faces along a ring whose visible side is on its left, around the holes that touch it."""
     panels: list[Panel] = []
     sides = np.array([(cut.quad[:2], cut.quad[2:]) for cut in cuts]).reshape(-1, 2, 2)  # both mouths of every hole
@@ -269,9 +250,7 @@ def _ring_panels(owner: str, ring: NDArray[np.float64], cuts: tuple[Cut, ...], h
     return panels
 
 
-def _touching(
-    a: NDArray[np.float64], along: NDArray[np.float64], length: float, sides: NDArray[np.float64]
-) -> list[tuple[float, float, int]]:
+def _touching(a: Floats, along: Floats, length: float, sides: Floats) -> list[tuple[float, float, int]]:
     """Return (start, end, side) of the holes whose `sides` (2C, 2, 2) lie in the edge from `a`, in the order along it."""
     away = sides - a
     offset = np.abs(away @ np.array([-along[1], along[0]])).max(axis=1)
@@ -280,19 +259,17 @@ def _touching(
     return sorted((float(low[k]), float(high[k]), int(k)) for k in np.flatnonzero((offset < 2e-3) & (high - low > 1e-3)))
 
 
-def _wall(
-    a: NDArray[np.float64], b: NDArray[np.float64], z0: float, z1: float, at_a: Sequence[float] = (), at_b: Sequence[float] = ()
-) -> NDArray[np.float64]:
+def _wall(a: Floats, b: Floats, z0: float, z1: float, at_a: Sequence[float] = (), at_b: Sequence[float] = ()) -> Floats:
     """Return the upright rectangle over a → b, counter-clockwise for one who stands on the left of a → b, with corners at more heights on either edge."""
     up, down = ([z for z in heights if z0 + 1e-3 < z < z1 - 1e-3] for heights in (at_a, at_b))
     return np.array([[*b, z0], [*a, z0], *([*a, z] for z in up), [*a, z1], [*b, z1], *([*b, z] for z in reversed(down))])
 
 
-def _drawn_in(polygon: NDArray[np.float64]) -> NDArray[np.float64]:
+def _drawn_in(polygon: Floats) -> Floats:
     """Return a polygon (n, 2) with its corners SEAM towards its middle: tops of walls that meet in a corner have points of their own there."""
     inward = polygon.mean(axis=0) - polygon
     return np.asarray(polygon + SEAM * inward / np.linalg.norm(inward, axis=1, keepdims=True))
 
 
-def _lift(polygon: NDArray[np.float64], z: float) -> NDArray[np.float64]:
+def _lift(polygon: Floats, z: float) -> Floats:
     return np.column_stack([polygon, np.full(len(polygon), z)])

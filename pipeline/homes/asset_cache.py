@@ -27,7 +27,7 @@ WRITERS = ("usd-core", "numpy", "pillow", "numba")  # packages that an asset's b
 ROOT = Path(__file__).resolve().parents[2]
 CODE = (  # what `write_asset` runs and reads of the checkout: no other change of it writes all assets again
     *(f"pipeline/{name}" for name in ("entities", "geometry", "rendering", "usd", "__init__.py")),
-    *(f"pipeline/{name}.py" for name in ("card", "errors", "params", "style", "taxonomy", "yaml_text")),
+    *(f"pipeline/{name}.py" for name in ("arrays", "card", "errors", "params", "style", "taxonomy", "yaml_text")),
     *(f"manifests/{name}" for name in ("categories", "materials.yaml", "rooms.yaml", "styles.yaml")),
 )
 

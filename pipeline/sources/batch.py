@@ -39,8 +39,7 @@ class Batch(Generic[T, R, M]):
 
     def result(self, item: R, outcome: Any) -> M:
         """Return what stands for an item of which that came."""
-        made: M = self.refused(item, outcome.reason, outcome.detail) if isinstance(outcome, _Refusal) else outcome
-        return made
+        return self.refused(item, outcome.reason, outcome.detail) if isinstance(outcome, _Refusal) else outcome
 
 
 @dataclass(frozen=True, slots=True)

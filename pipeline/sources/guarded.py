@@ -10,8 +10,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.reasons import SourceError
 
 MIB = 1 << 20
@@ -107,7 +107,7 @@ def read_json(folder: Folder, relative: str, limit: int = MAX_JSON) -> Any:
     return parse_json(folder.read(relative, limit), relative)
 
 
-def finite(value: Any, *shape: int) -> NDArray[np.float64] | None:
+def finite_array(value: Any, *shape: int) -> Floats | None:
     """Return nested lists of numbers as an array of that shape; None for anything else, and for what is not finite or beyond a million."""
     try:
         numbers = np.asarray(value)

@@ -8,11 +8,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.card import cards
 
-Floats = NDArray[np.float64]
 LEAST_SPREAD = 0.08  # relative; a narrower one would refuse what is merely unusual
 FACTORS = (1.0, 0.01, 100.0)  # to metres
 AGREES = 3.0  # a model that is at most so many times as large or small as its declared box is in that unit
@@ -63,7 +62,7 @@ def unit_factor(extent: Floats, declared: Floats | None, category: str | None) -
     return 100.0 if ratio < 1 / OTHER_UNIT else 1.0
 
 
-def likeliest(size: Floats, categories: Iterable[str]) -> str | None:
+def likeliest_category(size: Floats, categories: Iterable[str]) -> str | None:
     """Return the category whose size distribution makes `size` (w, d, h) [m] most likely, None where there is none."""
 
     def cost(category: str) -> tuple[float, str]:

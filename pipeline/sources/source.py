@@ -96,7 +96,7 @@ def require_folders(key: str, root: Path, parts: Iterable[str] = ()) -> None:
             raise ContentError(f"preprocess.sources.{key}: {folder} is {'no folder' if folder.exists() else 'missing'}", remedy)
 
 
-def below(root: Path, levels: int, closed: Collection[str] = ()) -> Iterator[Path]:
+def folders_below(root: Path, levels: int, closed: Collection[str] = ()) -> Iterator[Path]:
     """Yield the folders below, the nearest first; those named in `closed` are not looked into."""
     layer = [root]
     for _ in range(levels):

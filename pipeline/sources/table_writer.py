@@ -29,11 +29,6 @@ class Summary:
         self.joining.update(len(row["rooms"]) for row in house.openings)
         self.linked += len({(row["scene_id"], room) for row in house.openings if len(row["rooms"]) > 1 for room in row["rooms"]})
 
-    def add_library(self, library: LibraryRows) -> None:
-        """Count the models."""
-        self.rows.update(assets=len(library.assets), joints=len(library.joints))
-        self.rejects.update((row["what"], row["reason"]) for row in library.rejects)
-
     def lines(self) -> Iterator[str]:
         """Yield lines for a person: what was read, how many openings could be resolved, what was left out and why."""
         yield ", ".join(f"{count} {name}" for name, count in self.rows.items())
@@ -70,4 +65,5 @@ def write_library(folder: Path, library: LibraryRows, summary: Summary) -> None:
     """Write assets, asset_joints and asset_parts, and count them."""
     for table, rows in ((ASSETS, library.assets), (ASSET_JOINTS, library.joints), (ASSET_PARTS, library.parts)):
         tables.write(folder / f"{table.name}.parquet", table, rows)
-    summary.add_library(library)
+    summary.rows.update(assets=len(library.assets), joints=len(library.joints))
+    summary.rejects.update((row["what"], row["reason"]) for row in library.rejects)

@@ -6,15 +6,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pipeline import params
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Opening, Room
 from pipeline.geometry.free_space import bare_floor, standing_room
 from pipeline.geometry.robot import Robot
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from pipeline.entities.asset import Asset, Joint
 from pipeline.entities.home import Placement
 from pipeline.geometry.kinematics import moved_links
 from pipeline.geometry.polygons import contains
-from pipeline.geometry.prisms import Prisms, covering, join_prisms
+from pipeline.geometry.prisms import Prisms, covering_prisms, join_prisms
 from pipeline.verify.bodies import Bodies
 
 LEVEL = 0.1  # a slide whose axis rises less than this per metre keeps what lies in it
@@ -68,5 +68,5 @@ def covered(bodies: Bodies, things: Sequence[int], joint: Joint, turn: NDArray[n
     for i in (i for g in things for i in range(int(bodies.start[g]), int(bodies.start[g + 1]))):
         corners = p.polygon(i)
         posed = np.concatenate([np.column_stack([corners, np.full(len(corners), z)]) for z in p.z[i]]) + moves
-        groups.append(covering(np.concatenate([posed[:-1], posed[1:]], axis=1)))
+        groups.append(covering_prisms(np.concatenate([posed[:-1], posed[1:]], axis=1)))
     return join_prisms(groups)

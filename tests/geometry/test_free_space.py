@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import shapely
 
-from pipeline.geometry.floor_raster import Raster, dilate, standing
+from pipeline.geometry.floor_raster import Raster, dilate, standing_cells
 from pipeline.geometry.free_space import Floor, bare_floor, free_space, standing_room
 from pipeline.geometry.prisms import join_prisms, prism
 from tests.geometry.furniture import two_rooms
@@ -28,12 +28,12 @@ def test_area_of_a_room_is_that_of_its_polygon():
 def test_a_disc_stands_where_it_fits_and_covers_all_but_the_corners():
     raster = Raster.around([SQUARE], 0.05)
     free = raster.fill(raster.empty(), [SQUARE])
-    centres = standing(free, 0.25 / 0.05)
+    centres = standing_cells(free, 0.25 / 0.05)
     assert raster.area(centres) == pytest.approx(2.5 * 1.5, rel=0.02)
     swept = dilate(centres, 5)
     assert not (swept & ~free).any()
     assert raster.area(swept) == pytest.approx(6.0 - (4 - np.pi) * 0.25**2, rel=0.01)
-    assert not standing(free, 100).any()
+    assert not standing_cells(free, 100).any()
 
 
 def test_parts_hang_together_edge_to_edge():

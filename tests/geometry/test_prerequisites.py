@@ -4,7 +4,7 @@ from pipeline import taxonomy
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.partnet_writer import write_partnet
-from pipeline.geometry.prerequisites import waiting, with_prerequisites
+from pipeline.geometry.prerequisites import find_prerequisites, with_prerequisites
 from pipeline.sources.articulated.assets import assets
 from pipeline.sources.articulated.partnet import read_shape
 from pipeline.sources.guarded import Folder
@@ -13,13 +13,13 @@ from tests.geometry.furniture import inner_drawer
 
 
 def test_a_drawer_waits_for_the_door_before_it():
-    assert waiting(inner_drawer()) == [(), (0,)]
-    assert waiting(inner_drawer(outer=True)) == [(), ()]
+    assert find_prerequisites(inner_drawer()) == [(), (0,)]
+    assert find_prerequisites(inner_drawer(outer=True)) == [(), ()]
     assert [j.after for j in with_prerequisites(inner_drawer()).joints] == [(), ("door",)]
 
 
 def test_what_an_open_door_does_not_help_waits_for_nothing():
-    assert waiting(inner_drawer(angle=0.3)) == [(), ()]  # the door is still in the way when it is open
+    assert find_prerequisites(inner_drawer(angle=0.3)) == [(), ()]  # the door is still in the way when it is open
 
 
 def test_the_catalogue_says_the_same(tmp_path):

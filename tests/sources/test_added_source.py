@@ -17,8 +17,8 @@ from pipeline.sources.threed_front.floors import outline
 from pipeline.sources.threed_front.furniture import Placed
 from pipeline.sources.threed_front.house import rows_of
 from pipeline.sources.threed_front.house_file import NO_TURN, ONE, Child, HouseFile, RoomRecord
+from pipeline.sources.threed_front.house_rows import ReadRoom
 from pipeline.sources.threed_front.poses import Pose
-from pipeline.sources.threed_front.rows import ReadRoom
 from schemas import OBJECTS, REJECTS, SCENES
 from stages import preprocess
 from tests.sources.reading import WALKER

@@ -8,7 +8,7 @@ import pytest
 from shapely.geometry import Polygon, box
 
 from pipeline import taxonomy
-from pipeline.sources.threed_front.clearing import GAP, SLACK, clear
+from pipeline.sources.threed_front.clearing import GAP, SLACK, move_apart
 from pipeline.sources.threed_front.furniture import Placed
 from pipeline.sources.threed_front.house_file import Child
 from pipeline.sources.threed_front.notches import CELLS
@@ -25,12 +25,12 @@ def piece(category, x, y, size, *, yaw=0.0, z=0.0, shape=b""):
 
 
 def places(pieces, floor=ROOM, farthest=FARTHEST):
-    return [tuple(np.round(p.pose.position[:2], 4)) for p in clear(pieces, floor, WORDS, farthest)]
+    return [tuple(np.round(p.pose.position[:2], 4)) for p in move_apart(pieces, floor, WORDS, farthest)]
 
 
 def test_what_stands_free_stays_to_the_bit_and_has_no_note():
     pieces = [piece("wardrobe", 1, 2.69, (1.2, 0.6, 2.2)), piece("desk", 3, 2.69, (1.2, 0.6, 0.75))]
-    assert clear(pieces, ROOM, WORDS, FARTHEST) == pieces
+    assert move_apart(pieces, ROOM, WORDS, FARTHEST) == pieces
 
 
 @pytest.mark.parametrize("yaw", [0.0, np.pi / 2, 0.3])
@@ -58,22 +58,22 @@ def test_one_of_two_pieces_gives_way_and_comes_to_stand_where_something_is_behin
 
 def test_chairs_stay_under_tables_and_tables_in_the_notch_of_a_sofa():
     table, chair = piece("dining_table", 2, 1.5, (1.6, 0.9, 0.75)), piece("dining_chair", 2, 0.95, (0.5, 0.5, 0.9))
-    assert clear([table, chair], ROOM, WORDS, FARTHEST) == [table, chair]
+    assert move_apart([table, chair], ROOM, WORDS, FARTHEST) == [table, chair]
     mask = np.zeros(CELLS, bool)
     mask[:, 12:, :] = mask[:8, :, :] = True  # an L: its back, and a third of its width
     sofa = piece("l_shaped_sofa", 2, 1.5, (2.4, 1.6, 0.8), shape=np.packbits(mask).tobytes())
     low = piece("coffee_table", 2.6, 1.05, (0.9, 0.6, 0.4))
-    assert clear([sofa, low], ROOM, WORDS, FARTHEST) == [sofa, low]
-    assert clear([replace(sofa, shape=b""), low], ROOM, WORDS, FARTHEST) != [sofa, low]
+    assert move_apart([sofa, low], ROOM, WORDS, FARTHEST) == [sofa, low]
+    assert move_apart([replace(sofa, shape=b""), low], ROOM, WORDS, FARTHEST) != [sofa, low]
 
 
 def test_what_stands_on_a_piece_moves_with_it_and_what_stands_on_a_rug_moves_alone():
     stand, lamp = piece("nightstand", 0.2, 1, (0.5, 0.4, 0.5)), piece("table_lamp", 0.2, 1, (0.2, 0.2, 0.4), z=0.5)
-    made = clear([stand, lamp], ROOM, WORDS, FARTHEST)
+    made = move_apart([stand, lamp], ROOM, WORDS, FARTHEST)
     assert made[0].pose.position[0] == made[1].pose.position[0] == pytest.approx(0.25 + GAP)
     assert made[1].pose.position[2] == 0.5
     rug = piece("rug", 1, 1, (2.0, 1.9, 0.015))
-    made = clear([rug, piece("armchair", 0.35, 1, (0.8, 0.8, 0.8), z=0.015)], ROOM, WORDS, FARTHEST)
+    made = move_apart([rug, piece("armchair", 0.35, 1, (0.8, 0.8, 0.8), z=0.015)], ROOM, WORDS, FARTHEST)
     assert made[0] == rug
     assert made[1].pose.position[0] == pytest.approx(0.4 + GAP)
 
@@ -86,12 +86,12 @@ def test_lamps_rugs_and_things_above_each_other_do_not_conflict():
         piece("kitchen_cabinet", 3.6, 2.69, (0.6, 0.6, 0.9)),
         piece("wall_cabinet", 3.6, 2.8, (0.6, 0.38, 0.7), z=1.45),
     ]
-    assert clear(pieces, ROOM, WORDS, FARTHEST) == pieces
+    assert move_apart(pieces, ROOM, WORDS, FARTHEST) == pieces
 
 
 def test_nothing_is_moved_farther_than_it_may_be():
     deep = piece("wardrobe", 2, 3.1, (1.2, 1.4, 2.2))  # .8 m in the wall
-    assert clear([deep], ROOM, WORDS, FARTHEST) == [deep]
+    assert move_apart([deep], ROOM, WORDS, FARTHEST) == [deep]
     assert places([deep], farthest=1.0) == [(2.0, pytest.approx(2.3 - GAP))]
 
 
@@ -112,7 +112,7 @@ def test_no_room_is_worse_for_it(seed):
         )
         for _ in range(7)
     ]
-    made = clear(pieces, ROOM, WORDS, FARTHEST)
+    made = move_apart(pieces, ROOM, WORDS, FARTHEST)
     before, after = (harm(room) for room in (pieces, made))
     assert after <= before
     walls = ROOM.buffer(SLACK + 1e-4)

@@ -142,6 +142,7 @@ BOMB = "".join(f'<node id="n{k}"><instance_node url="#n{k + 1}"/><instance_node 
         (collada.dae(nodes=BOMB + '<node id="n60"/>'), "too_large"),
         (collada.dae(nodes='<node><instance_geometry url="#box"/></node>' * 3000), "too_large"),
         (collada.dae(nodes='<node><instance_geometry url="#gone"/></node>'), "not_obj"),
+        (collada.dae().replace(b'semantic="POSITION"', b'semantic="PLACE"'), "not_obj"),
         (collada.dae(node="<matrix>1 2 3</matrix>"), "not_obj"),
         (collada.dae(node="<scale>1e400 1 1</scale>"), "bad_number"),
         (collada.dae(node="<scale>1e30 1 1</scale>"), "bad_number"),

@@ -4,7 +4,7 @@ from shapely.geometry import box
 
 from pipeline.sources.threed_front.opening_evidence import MESHES, MIN_WIDTH, from_furniture, from_mesh
 from pipeline.sources.threed_front.reveals import jambs, merge
-from pipeline.sources.threed_front.wall_openings import resolve, touching
+from pipeline.sources.threed_front.wall_openings import passages_between, resolve
 from tests.sources import making
 from tests.sources.making import floor, slab
 from tests.sources.reading import read
@@ -86,7 +86,7 @@ def test_oblique_wall():
 
 def test_rooms_without_a_wall_between_are_open():
     rooms = {"a": box(0, 0, 4, 4), "b": box(4, 1, 7, 3), "c": box(4.12, 5, 7, 8)}
-    (made,) = touching(rooms, 2.7, [])
+    (made,) = passages_between(rooms, 2.7, [])
     assert (made.kind, made.rooms, made.opening_id) == ("open", ("a", "b"), "opening_0")
     assert made.width == pytest.approx(2, abs=0.1)
 
@@ -96,8 +96,8 @@ def test_floors_that_meet_under_a_door_are_that_door():
     strip = box(4, -1.9, 4.12, -1.0)
     rooms = {"left": ROOMS["left"].union(strip), "right": ROOMS["right"]}
     door = resolve(reveal("door", (4, 0, 1), (4.12, 2.1, 1.9)), rooms, "o", 0.4)
-    assert touching(rooms, 2.7, [door]) == []
-    (made,) = touching(rooms, 2.7, [])
+    assert passages_between(rooms, 2.7, [door]) == []
+    (made,) = passages_between(rooms, 2.7, [])
     assert (made.kind, made.rooms, made.height) == ("portal", ("left", "right"), 2.1)
     assert made.width == pytest.approx(0.9, abs=0.07)
 
@@ -106,8 +106,8 @@ def test_floors_that_touch_on_both_sides_of_a_door_are_not_open_to_each_other():
     """A reveal has a wall around it, although the floors meet in the middle of it."""
     rooms = {"left": box(0, -4, 4, 0), "right": box(4, -4, 6, 0)}
     door = resolve(reveal("door", (3.94, 0, 1), (4.06, 2.1, 1.9)), rooms, "o", 0.4)
-    assert touching(rooms, 2.7, [door]) == []
-    assert [o.kind for o in touching(rooms, 2.7, [])] == ["open"]
+    assert passages_between(rooms, 2.7, [door]) == []
+    assert [o.kind for o in passages_between(rooms, 2.7, [])] == ["open"]
 
 
 def test_jambs_by_themselves_make_a_door():

@@ -5,10 +5,10 @@ import pytest
 
 from pipeline import taxonomy
 from pipeline.sources.settings import FrontFilters
-from pipeline.sources.threed_front.furniture import Placed, overlapping
+from pipeline.sources.threed_front.furniture import Placed, find_overlaps
 from pipeline.sources.threed_front.house_file import Child
 from pipeline.sources.threed_front.poses import Pose
-from pipeline.sources.threed_front.supports import floating, supports
+from pipeline.sources.threed_front.supports import hangs_in_air, supports
 
 WORDS = taxonomy.load()
 
@@ -40,13 +40,13 @@ def test_a_thing_stands_on_the_top_it_starts_at_or_in_the_box_around_it(made, on
 
 
 def test_small_things_in_the_air_are_told_and_pictures_are_not():
-    assert floating(thing("cup", 0, 0, 0.4, (0.1, 0.1, 0.1)), -1, WORDS)
-    assert not floating(thing("cup", 0, 0, 0.4, (0.1, 0.1, 0.1)), 0, WORDS)
-    assert not floating(thing("picture", 0, 0, 1.4, (0.6, 0.03, 0.5)), -1, WORDS)
-    assert not floating(thing("wardrobe", 0, 0, 0.4, (1.0, 0.6, 2.0)), -1, WORDS)
+    assert hangs_in_air(thing("cup", 0, 0, 0.4, (0.1, 0.1, 0.1)), -1, WORDS)
+    assert not hangs_in_air(thing("cup", 0, 0, 0.4, (0.1, 0.1, 0.1)), 0, WORDS)
+    assert not hangs_in_air(thing("picture", 0, 0, 1.4, (0.6, 0.03, 0.5)), -1, WORDS)
+    assert not hangs_in_air(thing("wardrobe", 0, 0, 0.4, (1.0, 0.6, 2.0)), -1, WORDS)
 
 
 def test_things_inside_furniture_do_not_overlap_it():
     book = thing("book", 3.1, 1, 0.9, (0.2, 0.25, 0.03))
     chair = thing("dining_chair", 3.1, 1, 0.0, (0.4, 0.3, 0.8))
-    assert set(overlapping([SHELF, book, chair], FrontFilters(), WORDS)) == {2}
+    assert set(find_overlaps([SHELF, book, chair], FrontFilters(), WORDS)) == {2}

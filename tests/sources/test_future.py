@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull
 
 from pipeline.entities.files import encode, load_asset
 from pipeline.sources.guarded import Folder
-from pipeline.sources.meshes.mesh_solids import outside
+from pipeline.sources.meshes.mesh_solids import distances_outside
 from pipeline.sources.reasons import SourceError
 from pipeline.sources.rows import split_of
 from pipeline.sources.settings import ModelLimits
@@ -146,6 +146,6 @@ def test_a_sofa_of_one_mesh_collides_as_its_seats_and_not_in_its_corner(tmp_path
     assert "hull_collider" not in {r["reason"] for r in made.rejects}
     colliders = [ConvexHull(m.vertices).equations for m in made.asset.links[0].colliders]
     at = np.array([[x, y, 0.2] for x in (-0.8, 0.8) for y in (0.6, -0.6)])  # the last is in the corner
-    distances = np.min([outside(at, planes) for planes in colliders], axis=0)
+    distances = np.min([distances_outside(at, planes) for planes in colliders], axis=0)
     assert (distances[:3] <= 0).all()
     assert distances[3] > 0.3

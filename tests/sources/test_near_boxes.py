@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.optimize import nnls
 from scipy.spatial.transform import Rotation
 
-from pipeline.sources.meshes.colliders import link, solids
+from pipeline.sources.meshes.colliders import build_link, solids
 from pipeline.sources.meshes.mesh_solids import hull, signed_volume
 from pipeline.sources.meshes.near_boxes import NEAR, simplify_to_box
 from pipeline.sources.settings import ModelLimits
@@ -54,6 +54,6 @@ def test_what_is_round_or_cut_off_stays_as_it_is(mesh):
 
 def test_colliders_of_a_cabinet_of_rounded_boards_have_eight_corners_and_weigh_the_same():
     meshes = mobility.cabinet(np.random.default_rng(0))[0].meshes
-    made = link("body", (), solids("body", meshes, ModelLimits(), None), 600.0)
+    made = build_link("body", (), solids("body", meshes, ModelLimits(), None), 600.0)
     assert {len(piece.vertices) for piece in made.colliders} == {8}
     assert made.mass == pytest.approx(600 * sum(abs(signed_volume(v, f)) for v, f in meshes[:4]), rel=0.2)

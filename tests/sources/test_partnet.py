@@ -206,7 +206,7 @@ def test_part_boxes_are_read_back_as_the_corpus_wrote_them(tmp_path):
             X, Y, Z = np.array(entry["bbox"]).T
             assert np.allclose(box_corners(part.centre, part.axes, part.size), np.stack([-Y, X, Z], axis=1), atol=1e-6)
             assert np.linalg.det(part.axes) == pytest.approx(1)
-            points = shape.bodies[part.body].points()
+            points = shape.bodies[part.link].points()
             assert (part.centre >= points.min(axis=0) - 1e-3).all()
             assert (part.centre <= points.max(axis=0) + 1e-3).all()
             count += 1
@@ -304,10 +304,10 @@ def test_signs_tell_a_nightstand_from_a_kitchen_unit():
     extent = np.array([0.55, 0.45, 0.58])
     small = Signs({"leaf_width": (), "drawer_height": (0.2, 0.2), "handle_length": (0.12,), "board": (0.018,)}, 0, 2, False, 0.7, None)
     fits = [metric_scale.fit(extent, c, small) for c in ("nightstand", "kitchen_cabinet")]
-    assert metric_scale.best(fits, rms=9, keep=2, margin=99)[0].category == "nightstand"
+    assert metric_scale.best_fits(fits, rms=9, keep=2, margin=99)[0].category == "nightstand"
     large = Signs({"leaf_width": (0.27,), "drawer_height": (0.1,), "handle_length": (0.09,), "board": (0.011,)}, 2, 1, False, 0.95, 0.4)
     fits = [metric_scale.fit(extent, c, large) for c in ("nightstand", "kitchen_cabinet")]
-    assert metric_scale.best(fits, rms=9, keep=2, margin=99)[0].category == "kitchen_cabinet"
+    assert metric_scale.best_fits(fits, rms=9, keep=2, margin=99)[0].category == "kitchen_cabinet"
 
 
 def test_ids_that_collide_once_they_are_plain(tmp_path):
@@ -336,7 +336,7 @@ def test_metric_scale_recovers_a_mean_object(category):
     fit = metric_scale.fit(mean / 3.7, category)
     assert np.allclose(mean / 3.7 * fit.scale, mean, rtol=0.15)
     assert fit.rms < 1
-    assert metric_scale.best([metric_scale.fit(np.array([1.0, 0.001, 30.0]), category)], rms=2.5, keep=3, margin=2.0) == ()
+    assert metric_scale.best_fits([metric_scale.fit(np.array([1.0, 0.001, 30.0]), category)], rms=2.5, keep=3, margin=2.0) == ()
 
 
 def test_nested_folders_are_found(tmp_path):

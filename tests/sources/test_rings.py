@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from pipeline.sources.meshes.mesh_solids import convex
+from pipeline.sources.meshes.mesh_solids import convex_part
 from pipeline.sources.meshes.near_boxes import CORNERS
 from pipeline.sources.meshes.rings import is_ring, sectors
 
 
 def block(low, high):
-    return convex(np.array(low) + CORNERS * (np.array(high, float) - np.array(low)), 1.0)
+    return convex_part(np.array(low) + CORNERS * (np.array(high, float) - np.array(low)), 1.0)
 
 
 def ring(count, inner, outer, heights):
@@ -18,7 +18,7 @@ def ring(count, inner, outer, heights):
     for k in range(count):
         a = 2 * np.pi * (k + np.array([0, 1])) / count
         flat = np.concatenate([r * np.stack([np.cos(a), np.sin(a)], axis=1) for r in (inner, outer)])
-        made.append(convex(np.concatenate([np.column_stack([flat, np.full(4, z)]) for z in heights]), 1.0))
+        made.append(convex_part(np.concatenate([np.column_stack([flat, np.full(4, z)]) for z in heights]), 1.0))
     return made
 
 

@@ -8,10 +8,10 @@ from scipy.spatial import ConvexHull
 from pipeline.corpus.furniture.solids import rounded_rectangle
 from pipeline.sources.densities import MINIMUM
 from pipeline.sources.meshes import colliders, merging
-from pipeline.sources.meshes.colliders import link, solids
+from pipeline.sources.meshes.colliders import build_link, solids
 from pipeline.sources.meshes.cutting import cut
 from pipeline.sources.meshes.merging import merge_pieces
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, components, convex, extremes, hull, mass_properties, parts, signed_volume
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, components, convex_part, extremes, hull, mass_properties, parts, signed_volume
 from pipeline.sources.settings import ModelLimits
 from tests.sources import mobility
 
@@ -86,7 +86,7 @@ def test_mass_and_inertia_of_boxes(size, at):
 
 
 def test_inertia_of_a_link_is_physical():
-    made = link("b", (), solids("b", [box((0.001, 0.001, 0.2))], ModelLimits(), None), 1.0)
+    made = build_link("b", (), solids("b", [box((0.001, 0.001, 0.2))], ModelLimits(), None), 1.0)
     values = np.linalg.eigvalsh(made.inertia)
     assert values.min() > 0
     assert values[2] <= values[0] + values[1] + 1e-12
@@ -124,7 +124,7 @@ def test_cut_pieces_replace_the_mesh():
 def test_a_surface_is_covered_and_no_pocket_filled():
     v, f = bowl()
     made = cut(v, f, 0.05, 24)
-    pieces = [p for points in made.pieces if (p := convex(points, 1.0))]
+    pieces = [p for points in made.pieces if (p := convex_part(points, 1.0))]
     assert len(pieces) <= 24
     assert made.depth < 0.15
     middles = v[f].mean(axis=1)
@@ -243,10 +243,10 @@ def test_boards_that_share_corners_stay_two():
 
 def test_a_block_of_a_cabinet_weighs_as_a_box_of_boards():
     block = solids("b", [box((1, 0.5, 2))], ModelLimits(), None)
-    assert link("b", (), block, 600.0, "sofa").mass == pytest.approx(600)
-    assert link("b", (), block, 600.0, "cabinet").mass == pytest.approx(600 * 7 * 0.018)
+    assert build_link("b", (), block, 600.0, "sofa").mass == pytest.approx(600)
+    assert build_link("b", (), block, 600.0, "cabinet").mass == pytest.approx(600 * 7 * 0.018)
     board = solids("b", [box((1, 0.5, 0.02))], ModelLimits(), None)
-    assert link("b", (), board, 600.0, "cabinet").mass == pytest.approx(6)
+    assert build_link("b", (), board, 600.0, "cabinet").mass == pytest.approx(6)
 
 
 @pytest.mark.parametrize("seed", range(3))

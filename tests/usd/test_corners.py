@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from pipeline.entities.asset import Mesh
-from pipeline.sources.meshes.mesh_solids import hull, outside
+from pipeline.sources.meshes.mesh_solids import distances_outside, hull
 from pipeline.usd.corners import ALIKE, with_distinct_corners
 
 
@@ -36,7 +36,7 @@ def test_what_is_left_is_as_large_as_corners_are_alike():
         rng = np.random.default_rng(seed)
         shape = mesh_of(rng.normal(size=(60, 3)) * [0.01, 0.02, 0.03])
         fewer = with_distinct_corners(shape)
-        left_out = outside(shape.vertices.astype(np.float64), ConvexHull(fewer.vertices.astype(np.float64)).equations)
+        left_out = distances_outside(shape.vertices.astype(np.float64), ConvexHull(fewer.vertices.astype(np.float64)).equations)
         assert left_out.max() <= ALIKE
         away = np.linalg.norm(fewer.vertices[:, None] - fewer.vertices[None], axis=2)
         assert away[~np.eye(len(away), dtype=bool)].min() > ALIKE

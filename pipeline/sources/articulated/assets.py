@@ -4,25 +4,24 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset, Joint, Link, PartBox
 from pipeline.geometry.prerequisites import with_prerequisites
 from pipeline.sources.articulated.fitting import fit_shape
 from pipeline.sources.articulated.hidden_boards import without_hidden
 from pipeline.sources.articulated.metric_scale import Fit, Proportions
-from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
+from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint
 from pipeline.sources.articulated.shape_reader import distinct_names
 from pipeline.sources.densities import density
-from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, link, matter_volume, solids
+from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, build_link, matter_volume, solids
 from pipeline.sources.meshes.inertials import Inertial, combine_inertials, inertia_flaw, mass_flaw
-from pipeline.sources.meshes.legs import LOW, UNDER
+from pipeline.sources.meshes.small_parts import LOW, UNDER
 from pipeline.sources.meshes.touching import ANY, BUMPED, LEFT_ALONE, OVER, SAG, touch_tolerances
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
 from pipeline.taxonomy import Taxonomy
 
-Floats = NDArray[np.float64]
 LIDS = ("hinge_lid", "slider_lid")
 SHORT = {"gapartnet": "ga", "partnet-mobility": "pm", "urdf": "ur"}
 
@@ -66,7 +65,7 @@ def assets(
             stated, note = _stated_inertial(body, real, middle, fit, kind)
             weighed += note
             visuals = [replace(m, vertices=((m.vertices - middle) * fit.scale).astype(np.float32)) for m in body.visuals]
-            links.append(link(body.name, visuals, real, density(kind, "", fit.category), kind, stated, felt.get(k, how)))
+            links.append(build_link(body.name, visuals, real, density(kind, "", fit.category), kind, stated, felt.get(k, how)))
         shown = links if category.loose else without_hidden(links, shape.joints)
         asset = Asset(
             f"{SHORT[shape.source]}_{stem}_{fit.category}", fit.category, np.round(extent * fit.scale, 4),
@@ -109,6 +108,6 @@ def _joint(joint: ShapeJoint, middle: Floats, scale: float) -> Joint:
     return Joint(joint.name, joint.type, joint.parent, joint.child, axis, origin, lower, upper, joint.part_class)
 
 
-def _part(part: ShapePart, middle: Floats, scale: float) -> PartBox:
+def _part(part: PartBox, middle: Floats, scale: float) -> PartBox:
     centre, size = np.round((part.centre - middle) * scale, 6) + 0.0, np.round(part.size * scale, 6) + 0.0
-    return PartBox(part.body, part.part_class, centre, np.round(part.axes, 9) + 0.0, size, part.annotated)
+    return replace(part, centre=centre, axes=np.round(part.axes, 9) + 0.0, size=size)

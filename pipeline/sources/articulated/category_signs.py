@@ -5,13 +5,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.card import cards
-from pipeline.sources.articulated.shape import ArticulatedShape, ShapePart
+from pipeline.entities.asset import PartBox
+from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.meshes.mesh_solids import Part
 
-Floats = NDArray[np.float64]
 CLEAR = 0.9  # opacity below which a door is glazed
 LEAF = 0.05  # share of the front from which on what slides along it is a door
 FLAT = 5.0  # a piece this much wider than thick, both ways, is a board
@@ -52,7 +52,7 @@ def signs(shape: ArticulatedShape, base: Sequence[Part]) -> Signs:
         "handle_length": tuple(float(p.size.max()) for p in shape.parts if p.part_class == "line_fixed_handle"),
         "board": tuple(float(e[0]) for e in extents if e[1] > FLAT * e[0]),
     }
-    leaves = {p.body for p in doors}
+    leaves = {p.link for p in doors}
     clear = any(shape.palette.materials[m.material].opacity < CLEAR for k in leaves for m in shape.bodies[k].visuals)
     return Signs(sizes, len(doors) + len(sliding), len(drawers), clear, min(front, 1.0), _grip(shape.parts, doors))
 
@@ -79,17 +79,17 @@ def _normal(value: float, mean: float, spread: float) -> float:
     return -0.5 * ((value - mean) / spread) ** 2 - math.log(spread)
 
 
-def _reach(part: ShapePart) -> Floats:
+def _reach(part: PartBox) -> Floats:
     """Return the extent (3,) of a part's box along our axes."""
     return np.asarray(part.size @ np.abs(part.axes))
 
 
-def _grip(parts: Sequence[ShapePart], doors: Sequence[ShapePart]) -> float | None:
+def _grip(parts: Sequence[PartBox], doors: Sequence[PartBox]) -> float | None:
     """Return the mean height of handles on upright doors, in shares of the door's height from its middle."""
     heights = []
     for door in doors:
         height = float(_reach(door)[2])
         if abs(float(door.axes[0, 2])) < 0.8 or height <= 0:
             continue
-        heights += [(p.centre[2] - door.centre[2]) / height for p in parts if p.body == door.body and p.part_class.endswith("fixed_handle")]
+        heights += [(p.centre[2] - door.centre[2]) / height for p in parts if p.link == door.link and p.part_class.endswith("fixed_handle")]
     return float(np.clip(np.mean(heights), -0.5, 0.5)) if heights else None

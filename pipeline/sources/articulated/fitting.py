@@ -46,15 +46,15 @@ def fit_shape(
     def fits(variant: _Variant, fit_one: Callable[..., Fit | None], rms: float) -> tuple[Fit, ...]:
         extent, observed = variant.shape.extent[list(variant.order)], signs(variant.shape, base)
         tried = [fit_one(extent, category, observed) for category in categories]
-        return metric_scale.best(tried, rms=rms, keep=limits.fit_keep, margin=limits.fit_margin)
+        return metric_scale.best_fits(tried, rms=rms, keep=limits.fit_keep, margin=limits.fit_margin)
 
     # A file by itself is taken to be to scale where that makes it furniture.
     to_scale: list[Callable[..., Fit | None]] = (
-        [partial(metric_scale.metric, unit=unit) for unit in UNITS] if shape.source == "urdf" else []
+        [partial(metric_scale.fit_metric, unit=unit) for unit in UNITS] if shape.source == "urdf" else []
     )
     for fit_one in (*to_scale, metric_scale.fit):
-        if found := fits(_Variant(shape, AS_DRAWN, 0.0, ""), fit_one, limits.fit_rms if fit_one is metric_scale.fit else np.inf):
-            return shape, found
+        if fitting := fits(_Variant(shape, AS_DRAWN, 0.0, ""), fit_one, limits.fit_rms if fit_one is metric_scale.fit else np.inf):
+            return shape, fitting
     variants = list(_variants(shape))
     for wide in (False, True):
         if wide and shape.source == "urdf" and len(categories) > ANYTHING:
@@ -63,15 +63,15 @@ def fit_shape(
         for variant in variants:
             # Objects of a category are compared as they are drawn: turned ones are another matter.
             speaks = own if variant.order == AS_DRAWN and variant.cost <= FOLD else None
-            how = partial(metric_scale.wide, own=speaks) if wide else metric_scale.fit
-            if found := fits(variant, how, np.inf if wide else limits.fit_rms):
-                candidates.append((found[0].likelihood - variant.cost, variant, found))
+            how = partial(metric_scale.fit_wide, own=speaks) if wide else metric_scale.fit
+            if fitting := fits(variant, how, np.inf if wide else limits.fit_rms):
+                candidates.append((fitting[0].likelihood - variant.cost, variant, fitting))
         if candidates:
-            _, best, found = max(candidates, key=lambda entry: entry[0])
+            _, best, fitting = max(candidates, key=lambda entry: entry[0])
             what = ", ".join(filter(None, (best.what, "wide priors" if wide else ""))) or "as drawn"
             shape = best.shape.copied()
-            shape.notes.append(("model", "refitted", f"{what}: rms {found[0].rms:.2f} as {found[0].category}"))
-            return shape, found
+            shape.notes.append(("model", "refitted", f"{what}: rms {fitting[0].rms:.2f} as {fitting[0].category}"))
+            return shape, fitting
     return shape, ()
 
 

@@ -7,16 +7,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from pipeline.entities.asset import Link
 from pipeline.sources.articulated.shape import ShapeJoint
-from pipeline.sources.meshes.mesh_solids import outside
+from pipeline.sources.meshes.mesh_solids import distances_outside
 from pipeline.sources.meshes.reach import make_reach_test
-from pipeline.sources.meshes.touching import LEFT_ALONE, TOUCHED, UP, spread
-
-Floats = NDArray[np.float64]
+from pipeline.sources.meshes.touching import LEFT_ALONE, TOUCHED, UP, sample_hull
 
 DRAWER = "slider_drawer"
 BESIDE = 0.025  # [m] between the outside of a carcass and the drawers in it, at its sides
@@ -36,23 +33,16 @@ def without_hidden(links: Sequence[Link], joints: Sequence[ShapeJoint]) -> list[
 def without_covered(base: Link, drawers: Sequence[Link]) -> Link:
     """Return a carcass without the boards whose outsides the other boards and the drawers all but have."""
     hulls = [np.asarray(c.vertices, np.float64) for link in (base, *drawers) for c in link.colliders]
-    planes = [ConvexHull(h).equations for h in hulls]
+    shapes = [ConvexHull(h) for h in hulls]
+    planes = [shape.equations for shape in shapes]
     comes = make_reach_test(hulls, planes, HAND)
     kept = set(range(len(hulls)))
     boards = range(len(base.colliders))
     for k in sorted(boards, key=lambda k: (round(float(np.ptp(hulls[k], axis=0).prod()), 9), k)):
-        at, normals = _surface(hulls[k])
+        at, normals = sample_hull(shapes[k], SAMPLES)
         felt = comes(at + OFF * normals)
         at, normals = at[felt], normals[felt]
         allowed = np.where(normals[:, 2] > UP, TOUCHED, np.where(normals[:, 2] < -UP, LEFT_ALONE, BESIDE))
-        if (np.min([outside(at, planes[i]) for i in kept - {k}], axis=0) <= allowed).all():
+        if (np.min([distances_outside(at, planes[i]) for i in kept - {k}], axis=0) <= allowed).all():
             kept.discard(k)
     return replace(base, colliders=tuple(base.colliders[k] for k in boards if k in kept))
-
-
-def _surface(points: Floats) -> tuple[Floats, Floats]:
-    """Return points (P, 3) spread over the hull of points (N, 3), and the normals there."""
-    hull = ConvexHull(points)
-    corners = points[hull.simplices]
-    at = spread(corners, SAMPLES)
-    return at, np.repeat(hull.equations[:, :3], len(at) // len(corners), axis=0)

@@ -5,16 +5,17 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import PART_CLASSES, JointType
 from pipeline.geometry.kinematics import joint_motion
 from pipeline.sources.articulated.mobility_v2 import Mobility
 from pipeline.sources.articulated.part_classes import words_of
 from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, apply, span_of
 from pipeline.sources.articulated.urdf import UrdfJoint
+from pipeline.sources.meshes.mesh_solids import even_directions
+from pipeline.sources.meshes.sides import AROUND
 
-Floats = NDArray[np.float64]
 TURNS = 4 * math.pi  # [rad] a range beyond this is no limit
 SMALLEST = {"revolute": 1e-3, "prismatic": 1e-4}  # ranges [rad, units] below which nothing moves
 WORDS = {"revolute": ("hinge",), "prismatic": ("slider", "slider+")}  # mobility_v2.json's for a joint that moves so
@@ -25,20 +26,8 @@ STEPS = 41  # positions of a hinge that are tried, and again between the neighbo
 STROKE = 0.08  # share of the object's diagonal up to which what slides and turns is a knob or cap that turns
 TURNED = frozenset({"hinge_knob", "hinge_handle", "hinge_lid", "hinge_door"})
 TURNING_WORDS = ("knob", "cap", "dial", "switch", "screw", "lever", "valve", "wheel", "seat", "chair")
+DIRECTIONS = np.concatenate([even_directions(100), AROUND / np.linalg.norm(AROUND, axis=1)[:, None]])  # in which outlines reach furthest
 Limits = tuple[JointType, float, float]
-
-
-def _directions(count: int) -> Floats:
-    """Return unit vectors (count + 26, 3): evenly spread, and those towards the faces, edges and corners of a cube."""
-    k = np.arange(count) + 0.5
-    polar, turn = np.arccos(1 - 2 * k / count), np.pi * (1 + 5**0.5) * k
-    even = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
-    cube = np.stack(np.meshgrid(*[(-1.0, 0.0, 1.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    cube = cube[np.abs(cube).sum(axis=1) > 0]
-    return np.concatenate([even, cube / np.linalg.norm(cube, axis=1)[:, None]])
-
-
-DIRECTIONS = _directions(100)
 
 
 def limits(joint: UrdfJoint, known: Mobility | None, notes: list[Note]) -> Limits | None:

@@ -6,19 +6,17 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.articulated.shape import Note
 from pipeline.sources.articulated.urdf import Shape
 from pipeline.sources.guarded import Folder
 from pipeline.sources.meshes.collada_file import MAX_DAE, parse_dae
+from pipeline.sources.meshes.mesh_solids import even_directions, hull
 from pipeline.sources.meshes.obj_file import MAX_OBJ, MtlMaterial, ObjFile, ObjGroup, parse_obj
-from pipeline.sources.meshes.primitives import primitive
 from pipeline.sources.meshes.scene_file import MAX_SCENE, SceneMaterial, parse_scene
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 PACKAGE = re.compile(r"^(?:package|model)://", re.IGNORECASE)
 MAX_TOTAL = 1_500_000  # triangles of all files of an object together, counted once per use
 
@@ -71,13 +69,10 @@ class MeshFiles:
             yield from ((shape, group, file, points) for group in groups if len(group.faces))
 
     def _of(self, shape: Shape) -> ObjFile | None:
-        """Return a shape's triangles: its mesh file, a primitive as one, or None."""
-        if shape.mesh:
-            return self._file(shape.mesh)
-        return _solid(*primitive(*shape.primitive, shape.name)) if shape.primitive[0] else None
-
-    def _file(self, path: str) -> ObjFile | None:
-        """Return a mesh file, read once; a missing one is noted."""
+        """Return a shape's triangles: its mesh file, read once, a missing one noted; a primitive as one; or None."""
+        path = shape.mesh
+        if not path:
+            return _primitive(*shape.primitive, shape.name) if shape.primitive[0] else None
         if path not in self.files:
             try:
                 self.files[path] = self._load(path)
@@ -103,5 +98,19 @@ class MeshFiles:
         raise SourceError("missing_file", path, f"is of a kind that is not read ({suffix[:10]})")
 
 
-def _solid(vertices: Floats, faces: Ints) -> ObjFile:
+def _primitive(kind: str, values: tuple[float, ...], where: str) -> ObjFile:
+    """Return the outward triangles of a URDF primitive centred at the origin, a cylinder along z."""
+    if min(values) <= 0:
+        raise SourceError("bad_number", where, f"a {kind} of size {values}")
+    if kind == "box":
+        points = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * values
+    elif kind == "cylinder":
+        turn = np.arange(24) * (2 * np.pi / 24)
+        ring = np.stack([np.cos(turn), np.sin(turn)], axis=1) * values[0]
+        points = np.concatenate([np.column_stack([ring, np.full(24, z)]) for z in (-values[1] / 2, values[1] / 2)])
+    else:
+        points = even_directions(64) * values[0]
+    convex = hull(points)
+    assert convex is not None
+    vertices, faces, _ = convex
     return ObjFile(vertices, np.zeros((0, 2)), (ObjGroup("", "", faces, np.full_like(faces, -1)),), "")

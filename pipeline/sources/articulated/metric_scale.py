@@ -13,15 +13,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.articulated.category_signs import Signs, log_likelihood
 from pipeline.sources.articulated.part_classes import text_field
-from pipeline.sources.guarded import MIB, Folder, finite, read_json
+from pipeline.sources.guarded import MIB, Folder, finite_array, read_json
 from pipeline.sources.reasons import SourceError
 from pipeline.sources.sizes import sizes
 
-Floats = NDArray[np.float64]
 COMMON = 30  # models that every category counts beside its own, so that none is ruled out for being rare
 UNITS = (1.0, 0.01, 0.001)  # metres per unit of files that are to scale: metres, centimetres, millimetres
 METRIC = 2.5  # rms of standard deviations within which a shape passes for one that is in metres already
@@ -72,13 +71,13 @@ def fit(extent: Floats, category: str, observed: Signs | None = None, unit: floa
     return _fit_at(category, scale, z, likelihood, observed, fitted=not unit)
 
 
-def metric(extent: Floats, category: str, observed: Signs | None = None, unit: float = 1.0) -> Fit | None:
+def fit_metric(extent: Floats, category: str, observed: Signs | None = None, unit: float = 1.0) -> Fit | None:
     """Return the fit of an object that is to scale already, of `unit` metres per unit, or None where it is no such thing."""
     candidate = fit(extent, category, observed, unit) if extent[2] * unit <= TALLEST else None
     return candidate if candidate and candidate.rms <= METRIC else None
 
 
-def wide(extent: Floats, category: str, observed: Signs | None = None, own: Proportions | None = None) -> Fit | None:
+def fit_wide(extent: Floats, category: str, observed: Signs | None = None, own: Proportions | None = None) -> Fit | None:
     """Return the fit of an object that is built unlike its category's usual products, or None where it is nothing of the kind.
 
     Two of its three sides must agree on a scale, and decide it; the third may be odd (the sum of log(1 + z^2), Cauchy's
@@ -114,7 +113,7 @@ def _fit_at(category: str, scale: float, z: Floats, likelihood: float, observed:
     return Fit(category, round(scale, 6), float(np.sqrt((z**2).mean())), likelihood, fitted)
 
 
-def best(fits: Iterable[Fit | None], *, rms: float, keep: int, margin: float) -> tuple[Fit, ...]:
+def best_fits(fits: Iterable[Fit | None], *, rms: float, keep: int, margin: float) -> tuple[Fit, ...]:
     """Return the fits within `rms`, most likely first: at most `keep`, none worse than the best by more than `margin`."""
     candidates = [f for f in fits if f is not None and f.rms <= rms]
     candidates.sort(key=lambda f: (-f.likelihood, f.category))
@@ -129,13 +128,13 @@ def read_extent(source: Path, path: str) -> tuple[str, Floats] | None:
         category = text_field(read_json(folder, "meta.json", MIB), "model_cat")
     except (SourceError, OSError):
         return None
-    low, high = (finite(box.get(key), 3) if isinstance(box, dict) else None for key in ("min", "max"))
+    low, high = (finite_array(box.get(key), 3) if isinstance(box, dict) else None for key in ("min", "max"))
     if not category or low is None or high is None or not (high > low).all():
         return None
     return category, (high - low)[[0, 2, 1]]
 
 
-def spreads(objects: Iterable[tuple[str, Floats] | None]) -> Mapping[str, Proportions]:
+def gather_proportions(objects: Iterable[tuple[str, Floats] | None]) -> Mapping[str, Proportions]:
     """Return the proportions of every model category of which there are MANY objects."""
     logs: dict[str, list[Floats]] = {}
     for entry in objects:

@@ -8,13 +8,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pipeline.arrays import Floats
 from pipeline.sources.articulated.part_classes import text_field
-from pipeline.sources.guarded import MIB, Folder, finite, read_json
+from pipeline.sources.guarded import MIB, Folder, finite_array, read_json
 
-Floats = NDArray[np.float64]
 NAME = "mobility_v2.json"
 
 
@@ -43,9 +40,9 @@ def _entry(entry: dict[str, Any]) -> Mobility:
     joint, data = text_field(entry, "joint"), entry.get("jointData")
     data = data if isinstance(data, dict) else {}
     axis, limit = data.get("axis"), data.get("limit")
-    direction = finite(axis.get("direction"), 3) if isinstance(axis, dict) else None
+    direction = finite_array(axis.get("direction"), 3) if isinstance(axis, dict) else None
     limit = limit if isinstance(limit, dict) else {}
-    ends = finite([limit.get("a"), limit.get("b")], 2)
+    ends = finite_array([limit.get("a"), limit.get("b")], 2)
     scale = math.pi / 180 if joint == "hinge" else 1.0
     limits = None if ends is None else (float(ends[0]) * scale, float(ends[1]) * scale)
     return Mobility(joint, text_field(entry, "name"), direction, limits, limit.get("noLimit") is True, limit.get("rotates") is True)

@@ -8,14 +8,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
+from pipeline.entities.asset import PartBox
+from pipeline.geometry.kinematics import axis_distances
 from pipeline.sources.articulated.joint_rules import close_drawn_open
-from pipeline.sources.articulated.part_classes import box_of, shaped_class
-from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint, ShapePart
+from pipeline.sources.articulated.part_classes import shaped_class
+from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint
 from pipeline.sources.meshes.mesh_solids import qhull_of
 
-Floats = NDArray[np.float64]
 FRONT = np.array([0.0, -1.0, 0.0])
 
 
@@ -34,25 +35,22 @@ def complete_shape(shape: ArticulatedShape) -> ArticulatedShape:
             part_class = shaped_class(joint.type, joint.axis, mine.min(axis=0), mine.max(axis=0), whole)
             shape.joints[number] = replace(joint, part_class=part_class)
     close_drawn_open(shape)
-    known = {("other", j.child) for j in shape.joints} | {(p.part_class, p.body) for p in shape.parts}
-    movers = [mover_part(shape.bodies[j.child], j) for j in shape.joints if (j.part_class, j.child) not in known]
-    fixed = [part for k, body in enumerate(shape.bodies) for part in fixed_parts(k, body, shape.joints)]
-    shape.parts += [*movers, *(part for part in fixed if (part.part_class, part.body) not in known)]
+    known = {("other", j.child) for j in shape.joints} | {(p.part_class, p.link) for p in shape.parts}
+    movers = [_mover_part(shape.bodies[j.child], j) for j in shape.joints if (j.part_class, j.child) not in known]
+    fixed = [part for k, body in enumerate(shape.bodies) for part in _fixed_parts(k, body, shape.joints)]
+    shape.parts += [*movers, *(part for part in fixed if (part.part_class, part.link) not in known)]
     return shape
 
 
-def annotated_part(body: int, part_class: str, corners: Floats) -> ShapePart:
-    """Return a part of annotated corners (8, 3), already in our orientation."""
-    return ShapePart(body, part_class, *box_of(corners), annotated=True)
-
-
-def mover_part(body: ShapeBody, joint: ShapeJoint) -> ShapePart:
+def _mover_part(body: ShapeBody, joint: ShapeJoint) -> PartBox:
     """Return the part that a joint moves, boxed by its own geometry."""
     points = body.points()
     if joint.type == "prismatic":
         z = _unit(joint.axis, FRONT)
     else:
-        out = _unit(np.cross(joint.axis, _far(points, joint) - joint.origin), FRONT)
+        radius = axis_distances(joint, points)
+        far = points[radius >= 0.9 * radius.max()].mean(axis=0)
+        out = _unit(np.cross(joint.axis, far - joint.origin), FRONT)
         z = max((s * n for n in _sides(points, joint.axis) for s in (1, -1)), key=lambda n: float(n @ out), default=out)
     x = joint.axis if joint.part_class in {"hinge_door", "hinge_lid"} else _level(z)
     return _fit_part_box(joint.child, joint.part_class, points, x, z, annotated=not joint.inferred)
@@ -75,7 +73,7 @@ def _sides(points: Floats, axis: Floats) -> list[Floats]:
     return [along[best] @ plane, normal[best] @ plane]
 
 
-def fixed_parts(number: int, body: ShapeBody, joints: Sequence[ShapeJoint]) -> list[ShapePart]:
+def _fixed_parts(number: int, body: ShapeBody, joints: Sequence[ShapeJoint]) -> list[PartBox]:
     """Return the handles and buttons among a body's visuals, one part for each mesh."""
     carrier = next((j for j in joints if j.child == number), None)
     parts = []
@@ -98,19 +96,12 @@ def _outwards(points: Floats, carrier: ShapeJoint) -> Floats:
     return z
 
 
-def _far(points: Floats, joint: ShapeJoint) -> Floats:
-    """Return the middle of the points that lie farthest from a hinge's axis."""
-    away = points - joint.origin
-    radius = np.linalg.norm(away - np.outer(away @ joint.axis, joint.axis), axis=1)
-    return np.asarray(points[radius >= 0.9 * radius.max()].mean(axis=0))
-
-
-def _fit_part_box(body: int, part_class: str, points: Floats, x: Floats, z: Floats, *, annotated: bool) -> ShapePart:
+def _fit_part_box(body: int, part_class: str, points: Floats, x: Floats, z: Floats, *, annotated: bool) -> PartBox:
     z = _unit(z - x * (z @ x), _level(x))
     axes = np.stack([x, np.cross(z, x), z])
     along = points @ axes.T
     low, high = along.min(axis=0), along.max(axis=0)
-    return ShapePart(body, part_class, (low + high) / 2 @ axes, axes, high - low, annotated)
+    return PartBox(body, part_class, (low + high) / 2 @ axes, axes, high - low, annotated)
 
 
 def _level(z: Floats) -> Floats:

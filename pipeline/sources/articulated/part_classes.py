@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import PART_CLASSES
-from pipeline.sources.guarded import MIB, Folder, finite, read_json
+from pipeline.sources.guarded import MIB, Folder, finite_array, read_json
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float64]
 ANNOTATION = "link_annotation_gapartnet.json"
 FIXED_PARTS = frozenset({"line_fixed_handle", "round_fixed_handle", "slider_button", "hinge_handle", "hinge_knob"})
 # Words of PartNet's part names, first match wins; (word, class of a turning part, class of a sliding one).
@@ -74,7 +73,7 @@ def _corners(value: Any) -> Floats | None:
 
     The order, in the part's own axes: (-,+,+) (+,+,+) (+,-,+) (-,-,+) and the same four with z -.
     """
-    corners = finite(value, 8, 3)
+    corners = finite_array(value, 8, 3)
     if corners is None:
         return None
     centre, axes, size = box_of(corners)

@@ -13,7 +13,7 @@ from pipeline.sources.articulated.part_boxes import complete_shape
 from pipeline.sources.articulated.part_classes import annotated_links, semantics, text_field
 from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.articulated.shape_reader import Hints, ShapeReader
-from pipeline.sources.articulated.urdf import MAX_URDF, Urdf, parse_urdf
+from pipeline.sources.articulated.urdf import MAX_URDF, parse_urdf
 from pipeline.sources.guarded import MIB, Folder, read_json
 
 # By preference: joints and parts from GAPartNet's re-cut file, else from the original.
@@ -38,13 +38,10 @@ def read_shape(folder: Folder, source_id: str, texture_limit: int, known: Sequen
     links = {link: word for link, (_, word) in words.items()} if not annotated else {}
     # Links are numbered anew where GAPartNet cut them anew, so PartNet's own words and joints are of the plain URDF only.
     entries = mobility(folder) if source == "partnet-mobility" else {}
-    reader = ShapeReader(folder, "", urdf, FROM_PARTNET, Hints(annotated, links, entries, _looks(folder, source)), texture_limit)
+    looks = parse_urdf(folder.read(LOOKS, MAX_URDF), LOOKS) if source == "gapartnet" and folder.has(LOOKS) else None
+    reader = ShapeReader(folder, "", urdf, FROM_PARTNET, Hints(annotated, links, entries, looks), texture_limit)
     reader.notes += [("model", "part_box_refused", f"{link}: no box of eight corners in order") for link in odd]
     return complete_shape(reader.shape(source, source_id, model_cat))
-
-
-def _looks(folder: Folder, source: str) -> Urdf | None:
-    return parse_urdf(folder.read(LOOKS, MAX_URDF), LOOKS) if source == "gapartnet" and folder.has(LOOKS) else None
 
 
 def _model_cat(folder: Folder, words: Mapping[str, tuple[str, str]], known: Sequence[str]) -> str:

@@ -6,14 +6,14 @@ file's name and those of its folders, else from the size.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.articulated import metric_scale
 from pipeline.sources.articulated.metric_scale import UNITS
 from pipeline.sources.articulated.part_boxes import complete_shape
@@ -23,7 +23,6 @@ from pipeline.sources.articulated.urdf import MAX_URDF, Shape, Urdf, UrdfJoint, 
 from pipeline.sources.guarded import Folder
 from pipeline.taxonomy import Taxonomy
 
-Floats = NDArray[np.float64]
 Posed = TypeVar("Posed", Shape, UrdfJoint)
 UPRIGHT = {2: np.eye(3), 1: np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}  # rotations that bring an axis to z
 SNAP = 0.01  # [rad] an angle this near to a right one is one
@@ -40,7 +39,9 @@ def read_plain_urdf(root: Folder, file: str, source_id: str, texture_limit: int)
     """Read the URDF at `file` (relative to `root`), in the frame that it is drawn in. Raises SourceError."""
     base = PurePosixPath(file).parent.as_posix()
     urdf, snapped = _snap_rotations(parse_urdf(root.read(file, MAX_URDF), file))
-    reader = ShapeReader(root, "" if base == "." else base, urdf, np.eye(3), Hints(named=_words(urdf)), texture_limit)
+    # a link's name and its joint's say what it is: "drawer_top"
+    words = {name: name for name in urdf.links} | {joint.child: f"{joint.child} {joint.name}" for joint in urdf.joints}
+    reader = ShapeReader(root, "" if base == "." else base, urdf, np.eye(3), Hints(named=words), texture_limit)
     if snapped:
         reader.notes.append(("model", "angle_snapped", f"{snapped} angles"))
     return reader.shape("urdf", source_id, "")
@@ -81,7 +82,7 @@ def orient_shape(shape: ArticulatedShape, categories: Sequence[str]) -> Articula
     for up in (2, 1):
         turned = shape.turned(UPRIGHT[up])
         turned = turned.turned(_about(_heading(turned)))
-        scores = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.metric(turned.extent, c, None, unit))]
+        scores = [f.likelihood for unit in UNITS for c in categories if (f := metric_scale.fit_metric(turned.extent, c, None, unit))]
         tried.append((_level(turned) + (0.5 if up == 2 else 0.0) + 0.2 * max(scores, default=-20.0), turned))
     return complete_shape(max(tried, key=lambda t: t[0])[1])
 
@@ -142,8 +143,3 @@ def _snap_rotations(urdf: Urdf) -> tuple[Urdf, int]:
 
     links = {k: replace(link, visuals=exact(link.visuals), collisions=exact(link.collisions)) for k, link in urdf.links.items()}
     return replace(urdf, links=links, joints=exact(urdf.joints)), count
-
-
-def _words(urdf: Urdf) -> Mapping[str, str]:
-    """Return {link: the words of its own name and its joint's}: "drawer_top" says what it is."""
-    return {name: name for name in urdf.links} | {joint.child: f"{joint.child} {joint.name}" for joint in urdf.joints}

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.entities.asset import JointType, Mesh
+from pipeline.arrays import Floats, Ints
+from pipeline.entities.asset import Joint, Mesh, PartBox
 from pipeline.geometry.kinematics import joint_motion
 from pipeline.sources.meshes.inertials import Inertial
 from pipeline.sources.meshes.visual_meshes import Palette
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Note = tuple[str, str, str]  # (what, reason, detail)
 
 
@@ -45,18 +43,9 @@ class ShapeBody:
 
 
 @dataclass(frozen=True, slots=True)
-class ShapeJoint:
-    """A moving joint at rest; positive motion opens. `inferred`: nobody has annotated its part class."""
+class ShapeJoint(Joint):
+    """A moving joint between bodies, in the shape's units. `inferred`: nobody has annotated its part class."""
 
-    name: str
-    type: JointType
-    parent: int
-    child: int
-    axis: Floats
-    origin: Floats
-    lower: float
-    upper: float
-    part_class: str
     inferred: bool = True
 
     def moved(self, T: Floats) -> ShapeJoint:
@@ -68,35 +57,16 @@ class ShapeJoint:
         return replace(self, axis=-self.axis, lower=-self.upper, upper=-self.lower) if -self.lower > self.upper else self
 
 
-@dataclass(frozen=True, slots=True)
-class ShapePart:
-    """The oriented box of a part of `part_class` on a body: `centre` (3,), `axes` (3, 3) rows x, y, z right-handed, `size` (3,).
-
-    z looks outwards. `annotated`: the source says so; otherwise class and box were inferred.
-    """
-
-    body: int
-    part_class: str
-    centre: Floats
-    axes: Floats
-    size: Floats
-    annotated: bool
-
-    def moved(self, T: Floats) -> ShapePart:
-        """Return the part under the rigid motion T (4, 4)."""
-        return replace(self, centre=T[:3, :3] @ self.centre + T[:3, 3], axes=self.axes @ T[:3, :3].T)
-
-
 @dataclass(slots=True)
 class ArticulatedShape:
-    """What a folder or file holds: bodies (0 is the base), joints parents first, parts, and the notes of repairs."""
+    """What a folder or file holds: bodies (0 is the base), joints parents first, parts by body, and the notes of repairs."""
 
     source: str
     source_id: str
     model_cat: str
     bodies: list[ShapeBody]
     joints: list[ShapeJoint]
-    parts: list[ShapePart]
+    parts: list[PartBox]
     palette: Palette
     notes: list[Note]
 
@@ -118,7 +88,7 @@ class ArticulatedShape:
         turned = self.copied()
         turned.bodies = [body.moved(T) for body in self.bodies]
         turned.joints = [joint.moved(T) for joint in self.joints]
-        turned.parts = [part.moved(T) for part in self.parts]
+        turned.parts = [_moved_part(part, T) for part in self.parts]
         return turned
 
     def copied(self) -> ArticulatedShape:
@@ -144,9 +114,13 @@ class ArticulatedShape:
         for k in moved:
             self.bodies[k] = self.bodies[k].moved(T)
         self.joints = [other.moved(T) if other.parent in moved else other for other in self.joints]
-        self.parts = [part.moved(T) if part.body in moved else part for part in self.parts]
+        self.parts = [_moved_part(part, T) if part.link in moved else part for part in self.parts]
         self.joints[number] = replace(joint, lower=joint.lower - q, upper=joint.upper - q)
         return moved, T
+
+
+def _moved_part(part: PartBox, T: Floats) -> PartBox:
+    return replace(part, centre=T[:3, :3] @ part.centre + T[:3, 3], axes=part.axes @ T[:3, :3].T)
 
 
 def apply(T: Floats, points: Floats) -> Floats:

@@ -7,23 +7,21 @@ from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.entities.asset import Mesh
+from pipeline.arrays import Floats
+from pipeline.entities.asset import Mesh, PartBox
 from pipeline.sources.articulated import joint_rules
 from pipeline.sources.articulated.mesh_files import MeshFiles
 from pipeline.sources.articulated.mobility_v2 import Mobility
-from pipeline.sources.articulated.part_boxes import annotated_part
-from pipeline.sources.articulated.part_classes import Annotation, fixed_class, named_class
+from pipeline.sources.articulated.part_classes import Annotation, box_of, fixed_class, named_class
 from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, span_of
 from pipeline.sources.articulated.urdf import Shape, Urdf, UrdfLink
 from pipeline.sources.guarded import Folder
 from pipeline.sources.meshes.near_boxes import FACES
 from pipeline.sources.meshes.obj_file import MtlMaterial, ObjFile, ObjGroup
-from pipeline.sources.meshes.visual_meshes import Palette, visual
+from pipeline.sources.meshes.visual_meshes import Palette, visual_mesh
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float64]
 LIKE = 0.03  # share of the object's diagonal within which the boxes of two sets of meshes of a body agree
 POST = 0.02  # the same for the thickness of the post that stands in for a frame that a door lacks
 
@@ -70,7 +68,7 @@ class ShapeReader:
         shape.joints = [replace(j, parent=index[j.parent], child=index[j.child]) for j in shape.joints]
         self._ensure_base(shape)
         shape.parts = [
-            annotated_part(index[body_of[name]], note.part_class, note.corners @ self.frame.T)
+            PartBox(index[body_of[name]], note.part_class, *box_of(note.corners @ self.frame.T), annotated=True)
             for name, note in self.hints.annotated.items()
             if note.corners is not None and body_of.get(name) in index
         ]
@@ -106,7 +104,8 @@ class ShapeReader:
             body_of[joint.child] = child = len(bodies)
             part, inferred = self._part_class(joint.child, kind)
             axis, origin = T[joint.child][:3, :3] @ joint.axis, T[joint.child][:3, 3].copy()
-            joints.append(ShapeJoint(joint.name, kind, body_of[joint.parent], child, axis, origin, lower, upper, part, inferred))
+            ends = body_of[joint.parent], child
+            joints.append(ShapeJoint(joint.name, kind, *ends, axis, origin, lower, upper, part, inferred=inferred))
             bodies.append(ShapeBody(slug(joint.child)))
         return body_of, bodies, joints
 
@@ -123,7 +122,7 @@ class ShapeReader:
             extent = np.ptp(points[group.faces.ravel()], axis=0)
             part = fixed_class(link.name, shape.name, self.hints.annotated, extent, moves=link.name in self.moving)
             material = self._material(shape, file, group)
-            mesh = visual(group, file, points, f"mesh_{start + len(meshes):03d}", material, part)
+            mesh = visual_mesh(group, file, points, f"mesh_{start + len(meshes):03d}", material, part)
             if mesh:
                 meshes.append(mesh)
         return meshes

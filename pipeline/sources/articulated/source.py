@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from pipeline import taxonomy
 from pipeline.manifest import sha256
 from pipeline.sources.articulated.assets import assets
-from pipeline.sources.articulated.metric_scale import read_extent, spreads
+from pipeline.sources.articulated.metric_scale import gather_proportions, read_extent
 from pipeline.sources.articulated.partnet import URDFS, read_shape
 from pipeline.sources.articulated.plain_urdf import candidates, orient_shape, read_plain_urdf
 from pipeline.sources.batch import Batch
@@ -23,7 +23,7 @@ OWN_FILES = frozenset({"meta.json", *(name for name, _ in URDFS)})  # a folder w
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class ObjectEntry:
     """An object of an articulated source: its folder or URDF relative to the source, and the stem of its assets' ids."""
 
     path: str
@@ -67,13 +67,13 @@ class Articulated(Source):
     def models(self, listing: Listing, reading: Reading) -> Iterator[LibraryRows]:
         """Read the proportions of all objects, then the objects."""
         drawn = Batch("extent", read_extent, listing.root, [entry.path for entry in listing.items], lambda *_: None)
-        task = Task(listing.root, reading, spreads(reading.each(drawn)))
+        task = Task(listing.root, reading, gather_proportions(reading.each(drawn)))
         yield from reading.each(
             Batch("object", read_object, task, listing.items, lambda entry, *why: LibraryRows.refused(entry.source_id, *why))
         )
 
 
-def objects_in(source: Path) -> list[Found]:
+def objects_in(source: Path) -> list[ObjectEntry]:
     """Return the objects below `source`, sorted: folders of PartNet-Mobility or GAPartNet, and URDFs by themselves.
 
     A link to a folder elsewhere is among them, to be refused; one to a folder within would only name it twice. Objects that share a stem
@@ -93,15 +93,15 @@ def objects_in(source: Path) -> list[Found]:
         paths += [(here / file).as_posix() for file in sorted(files) if file.lower().endswith(".urdf")]
         if len(here.parts) >= DEPTH:
             folders.clear()
-    plain = ["".join(c if c.isalnum() and c.isascii() else "_" for c in Found(path, "").source_id.lower())[:60] for path in paths]
+    plain = ["".join(c if c.isalnum() and c.isascii() else "_" for c in ObjectEntry(path, "").source_id.lower())[:60] for path in paths]
     count = Counter(plain)
     return [
-        Found(path, stem if count[stem] == 1 and stem.strip("_") else f"{stem.strip('_')}_{sha256(path.encode())[:8]}".strip("_"))
+        ObjectEntry(path, stem if count[stem] == 1 and stem.strip("_") else f"{stem.strip('_')}_{sha256(path.encode())[:8]}".strip("_"))
         for path, stem in zip(paths, plain, strict=True)
     ]
 
 
-def read_object(task: Task, entry: Found) -> LibraryRows:
+def read_object(task: Task, entry: ObjectEntry) -> LibraryRows:
     """Read one articulated object and write an asset file for each category that it serves; `known` of the task are proportions by category."""
     rows, kinds, root, limits = LibraryRows(), taxonomy.load(), Folder.at(task.root), task.reading.settings.models
     if entry.path.lower().endswith(".urdf"):

@@ -11,13 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.meshes.inertials import Inertial
 from pipeline.sources.meshes.xml_file import xml_root
 from pipeline.sources.reasons import SourceError
-
-Floats = NDArray[np.float64]
 
 MAX_URDF = 8 << 20  # bytes
 MAX_ELEMENTS = 100_000

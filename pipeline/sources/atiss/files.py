@@ -18,11 +18,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Ints
 from pipeline.manifest import write_bytes
 from pipeline.sources.guarded import Folder, read_json
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float32]
+Float32s = NDArray[np.float32]
 BOXES, STATS = "boxes.npz", "dataset_stats.txt"
 ENDS = ("start", "end")  # the last two columns of class_labels
 MASK = 256  # pixels a side
@@ -50,13 +51,13 @@ class CachedRoom:
     scene_type: str
     json_path: str
     layout: NDArray[np.uint8]
-    vertices: Floats
-    faces: NDArray[np.int64]
-    centroid: Floats
-    classes: Floats
-    translations: Floats
-    sizes: Floats
-    angles: Floats
+    vertices: Float32s
+    faces: Ints
+    centroid: Float32s
+    classes: Float32s
+    translations: Float32s
+    sizes: Float32s
+    angles: Float32s
 
 
 def write_room(folder: Path, room: CachedRoom) -> None:
@@ -85,7 +86,7 @@ def read_room(folder: Folder, file: str) -> CachedRoom:
             raise refuse(f"{name} has type {held.dtype} and shape {held.shape}")
         return held
 
-    def numbers(name: str, *shape: int | None) -> Floats:
+    def numbers(name: str, *shape: int | None) -> Float32s:
         floats = array(name, "fiu", *shape).astype(np.float32)
         if not np.isfinite(floats).all():
             raise refuse(f"{NAMES.get(name, name)} holds a number that is not finite")
@@ -158,7 +159,7 @@ def stats(rooms: Sequence[CachedRoom], classes: Sequence[str]) -> dict[str, Any]
     }
 
 
-def _bounds(parts: list[Floats], columns: int) -> list[float]:
+def _bounds(parts: list[Float32s], columns: int) -> list[float]:
     """Return the least value of every column, then the largest."""
     whole = np.concatenate([np.zeros((0, columns)), *parts])
     return [*whole.min(axis=0).tolist(), *whole.max(axis=0).tolist()] if len(whole) else [0.0] * (2 * columns)

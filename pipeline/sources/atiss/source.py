@@ -21,14 +21,14 @@ from pipeline.sources.guarded import Folder
 from pipeline.sources.reasons import SourceError, reject
 from pipeline.sources.rows import HouseRows, LibraryRows, slug
 from pipeline.sources.settings import PreprocessSettings
-from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest
+from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest_category
 from pipeline.sources.source import Listing, Reading, Source, Task, require_folders
 from pipeline.sources.threed_front.floors import outline
 from pipeline.sources.threed_front.furniture import Model, Placed
 from pipeline.sources.threed_front.house import rows_of
 from pipeline.sources.threed_front.house_file import NO_TURN, ONE, Child, HouseFile, RoomRecord
+from pipeline.sources.threed_front.house_rows import ReadRoom
 from pipeline.sources.threed_front.poses import Pose, to_ours
-from pipeline.sources.threed_front.rows import ReadRoom
 
 House = tuple[str, tuple[tuple[Kind, str], ...]]  # its id; of each room its kind, and its file relative to the source
 
@@ -144,7 +144,7 @@ def _objects(cached: CachedRoom, models: Mapping[str, Model], kind: Kind, rows: 
             continue
         members = kind.categories(kind.classes[column])
         model = models.get(jid)
-        category = model.category if model and model.category in members else likeliest(size, members) or members[0]
+        category = model.category if model and model.category in members else likeliest_category(size, members) or members[0]
         position, angle = to_ours(middles[k] - [0, half[1], 0]), float(cached.angles[k, 0])
         pose = Pose(position, math.pi if abs(angle) >= math.pi - 1e-7 else angle, size, mirrored=False)  # the peers' range is [-pi, pi)
         scale = np.round(size / np.array(model.asset_size), 6) if model else ONE

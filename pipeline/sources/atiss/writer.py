@@ -11,12 +11,12 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from pipeline.arrays import Floats, Ints
 from pipeline.manifest import write_bytes
 from pipeline.sources.atiss.files import ENDS, MASK, STATS, CachedRoom, stats, write_room, write_stats
 from pipeline.sources.atiss.labels import HIGHEST, LEAST, LOWEST, Kind
 from pipeline.sources.reasons import Row, reject
 
-Floats = NDArray[np.float64]
 Rooms = Sequence[tuple[str, Row, Sequence[Row]]]  # (split, row of the room, rows of its objects)
 
 
@@ -110,7 +110,7 @@ def to_cached_room(row: Row, objects: Sequence[Row], kind: Kind, scene_id: str) 
     )
 
 
-def floor_mesh(polygon: Floats) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+def floor_mesh(polygon: Floats) -> tuple[NDArray[np.float32], Ints]:
     """Return vertices (V, 3) in the file frame and triangles (F, 3), facing up, of a floor (n, 2) in our plan."""
     vertices = np.stack([polygon[:, 0], np.zeros(len(polygon)), -polygon[:, 1]], axis=1).astype(np.float32) + np.float32(0)
     index = {tuple(p): k for k, p in enumerate(polygon.tolist())}

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.sources.meshes.collada_materials import Elements, material
 from pipeline.sources.meshes.obj_file import (
     MAX_COORDINATE,
@@ -27,8 +28,6 @@ from pipeline.sources.meshes.obj_file import (
 from pipeline.sources.meshes.xml_file import xml_root
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 MAX_DAE = 16 << 20  # bytes; numbers of one digit take eight times their text
 MAX_ELEMENTS = 200_000
 DEPTH = 64  # of the tree of nodes
@@ -107,18 +106,15 @@ class _Reader:
             T = T @ _transform(element)
         for instance in node.findall("instance_geometry"):
             bound = {m.get("symbol"): m.get("target", "").removeprefix("#") for m in instance.iter("instance_material")}
-            self._geometry(self._resolve(instance), T, bound)
+            mesh = self._resolve(instance).find("mesh")
+            for primitive in mesh if mesh is not None else ():
+                if primitive.tag in KINDS:
+                    self._visit()
+                    self._primitive(primitive, T, bound)
         for child in node.findall("node"):
             self._node(child, T, depth + 1)
         for instance in node.findall("instance_node"):
             self._node(self._resolve(instance), T, depth + 1)
-
-    def _geometry(self, geometry: Any, T: Floats, bound: dict[str, str]) -> None:
-        mesh = geometry.find("mesh")
-        for primitive in mesh if mesh is not None else ():
-            if primitive.tag in KINDS:
-                self._visit()
-                self._primitive(primitive, T, bound)
 
     def _primitive(self, primitive: Any, T: Floats, bound: dict[str, str]) -> None:
         inputs = {i.get("semantic"): i for i in reversed(primitive.findall("input"))}  # of several sets the first
@@ -127,8 +123,7 @@ class _Reader:
         if not 0 < width <= MOST_INPUTS:
             raise SourceError("not_obj", self.where, f"has corners of {width} indices")
         corners = np.concatenate([*_triangles(primitive, width), np.zeros((0, 3, width), np.int64)])
-        position = next(i for i in self._named_source(vertex).findall("input") if i.get("semantic") == "POSITION")
-        points = self._source(position, 3)
+        points = self._source(self.elements[vertex.get("source").removeprefix("#")].find("input[@semantic='POSITION']"), 3)
         uvs = self._source(uv, 2) if uv is not None else np.zeros((0, 2))
         faces = corners[:, :, int(vertex.get("offset", 0))]
         uv_faces = corners[:, :, int(uv.get("offset", 0))] if uv is not None else np.full_like(faces, -1)
@@ -148,9 +143,6 @@ class _Reader:
         symbol = primitive.get("material", "")
         uv_faces = uv_faces + start_uv if uv is not None else uv_faces
         self.groups.append(ObjGroup(primitive.get("name", ""), bound.get(symbol, symbol), faces + start, uv_faces))
-
-    def _named_source(self, given: Any) -> Any:
-        return self.elements[given.get("source").removeprefix("#")]
 
     def _source(self, given: Any, width: int) -> Floats:
         """Return the values (N, width) of a source, parsed once."""

@@ -6,22 +6,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.entities.asset import Link, Mesh
 from pipeline.sources.densities import BOARD, BOXES, HOLLOW, MINIMUM
 from pipeline.sources.meshes.cutting import cut
 from pipeline.sources.meshes.inertials import Inertial
 from pipeline.sources.meshes.merging import merge_pieces
-from pipeline.sources.meshes.mesh_solids import Part, convex, mass_properties, parts_with_meshes
+from pipeline.sources.meshes.mesh_solids import Part, convex_part, mass_properties, parts_with_meshes
 from pipeline.sources.meshes.near_boxes import simplify_to_box
 from pipeline.sources.meshes.recesses import stand_midway
 from pipeline.sources.meshes.sides import with_few_sides
-from pipeline.sources.meshes.touching import TOUCHED, Felt, simpler
+from pipeline.sources.meshes.touching import TOUCHED, TouchTolerances, simplify_pieces
 from pipeline.sources.settings import ModelLimits
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Dissected = tuple[Part, Floats, Ints]
 # The work that an object may cost, in counts: the same object gives the same colliders however busy the machine is.
 WORTH = 1e-3  # share of the largest hull below which cutting a part into pieces changes nothing that a robot feels
@@ -85,7 +83,7 @@ def _cuts(bodies: Sequence[Sequence[Dissected]], limits: ModelLimits, tolerance:
             cuts[body, k] = [part]
             continue
         pieces = cut(points, triangles, tolerance, min(PIECES, left)).pieces
-        cuts[body, k] = [part] if len(pieces) == 1 else [p for piece in pieces if (p := convex(piece, part.volume / len(pieces)))]
+        cuts[body, k] = [part] if len(pieces) == 1 else [p for piece in pieces if (p := convex_part(piece, part.volume / len(pieces)))]
         left = max(left - len(pieces), 1)
     return cuts
 
@@ -103,14 +101,14 @@ def _solids(name: str, dissection: Sequence[Dissected], cuts: Mapping[int, list[
     return Solids(tuple(part for part, _, _ in dissection), tuple(pieces), tuple(notes))
 
 
-def link(
+def build_link(
     name: str,
     visuals: Iterable[Mesh],
     matter: Solids,
     density: float,
     kind: str = "",
     stated: Inertial | float | None = None,
-    how: Felt | None = None,
+    how: TouchTolerances | None = None,
 ) -> Link:
     """Return the link [m, kg] of visual meshes and solids; `kind` is the super-category, `how` truly it is felt.
 
@@ -125,14 +123,15 @@ def link(
     if 0 < mass < MINIMUM:
         inertia = inertia * (MINIMUM / mass)
     least = 1e-6 * np.eye(3)  # engines refuse inertias of thin parts that round to zero
-    how, visuals = how or Felt(), tuple(visuals)
-    pieces = simpler(matter.pieces, how)
+    how, visuals = how or TouchTolerances(), tuple(visuals)
+    pieces = simplify_pieces(matter.pieces, how)
     floor = min((float(p.hull[:, 2].min()) for p in pieces), default=0.0)
     boxes = [simplify_to_box(p.hull, p.faces, how.box, floor) for p in pieces]
     if how.sides <= TOUCHED:
         seen = [m.vertices[m.faces].astype(np.float64) for m in visuals if not m.part]
         boxes = [(stand_midway(hull, np.concatenate(seen)), faces) for hull, faces in boxes] if seen else boxes
-    colliders = tuple(_piece(k, *with_few_sides(*box, how.sides)) for k, box in enumerate(boxes))
+    hulls = enumerate(with_few_sides(*box, how.sides) for box in boxes)
+    colliders = tuple(Mesh(f"piece_{k:03d}", hull.astype(np.float32), faces.astype(np.int32)) for k, (hull, faces) in hulls)
     return Link(name, visuals, colliders, round(max(mass, MINIMUM), 5), np.round(com, 6), np.round(inertia, 9) + least)
 
 
@@ -146,7 +145,3 @@ def _hollow_out(part: Part, kind: str) -> Part:
     if kind not in BOXES or np.ptp(part.hull, axis=0).min() <= HOLLOW:
         return part
     return replace(part, volume=min(part.volume, part.area * BOARD))
-
-
-def _piece(number: int, hull: Floats, faces: Ints) -> Mesh:
-    return Mesh(f"piece_{number:03d}", hull.astype(np.float32), faces.astype(np.int32))

@@ -15,15 +15,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
+from pipeline.arrays import Bools, Floats, Ints
 from pipeline.sources.meshes.mesh_solids import cross, qhull_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 CELLS = 120_000  # of a grid at most
 FINE = 2.0  # cells that a tolerance is wide, where CELLS allow it
@@ -278,13 +274,10 @@ def _best(grid: _Grid, piece: _Piece, axis: int) -> tuple[float, int, int]:
     )[::-1]
     whole = max(float(piece.hull.volume), 1e-15)
     even = np.abs((planes - first) / (last - first) - 0.5) * 2
-    cost = (np.array(left) + np.array(right)) / whole + BALANCE * (1 + even - (last - first) * grid.cell / _span(grid))
+    share = (last - first) * grid.cell / (float(max(grid.depth.shape)) * grid.cell)
+    cost = (np.array(left) + np.array(right)) / whole + BALANCE * (1 + even - share)
     k = int(np.argmin(cost.round(9)))
     return float(cost[k].round(9)), axis, int(planes[k])
-
-
-def _span(grid: _Grid) -> float:
-    return float(max(grid.depth.shape)) * grid.cell
 
 
 def _fewer(grid: _Grid, members: Ints, axis: int) -> Ints:

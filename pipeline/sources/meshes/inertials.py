@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.densities import KINDS, MATERIALS
 
-Floats = NDArray[np.float64]
 LIGHTEST = min(*MATERIALS.values(), *KINDS.values()) / 4  # [kg/m3] of matter: the volumes are estimates as well
 DENSEST = max(*MATERIALS.values(), *KINDS.values()) * 3
 AWAY = 0.1  # share of its body's diagonal by which a centre of mass may lie outside of its box

@@ -9,14 +9,10 @@ import heapq
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from pipeline.arrays import Bools, Floats, Ints
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, normals, qhull_of
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 GAIN = 0.02  # share of a merged piece that may be filled without having been matter
 NEAR = 1e-3  # share of the link's diagonal within which boxes count as touching

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from pipeline.arrays import Bools, Floats, Ints
 
 WELD = 1e-5  # share of the mesh's diagonal within which vertices are one
 MAX_HULL = 64  # vertices; PhysX takes no more in one convex piece
@@ -43,16 +41,9 @@ class Part:
     def scaled(self, shift: Floats, factor: float) -> Part:
         """Return the part moved by -`shift` (3,), then scaled by `factor`."""
         cubed = factor**3
-        return Part(
-            (self.hull - shift) * factor,
-            self.faces,
-            self.hull_volume * cubed,
-            self.fill,
-            self.volume * cubed,
-            self.area * factor**2,
-            (self.centre - shift) * factor,
-            self.inertia * cubed * factor**2,
-        )
+        hull, centre = (self.hull - shift) * factor, (self.centre - shift) * factor
+        measures = self.hull_volume * cubed, self.fill, self.volume * cubed, self.area * factor**2
+        return Part(hull, self.faces, *measures, centre, self.inertia * cubed * factor**2)
 
 
 def parts(vertices: Floats, faces: Ints) -> list[Part]:
@@ -77,7 +68,7 @@ def combine_parts(pieces: Sequence[Part]) -> Part:
     return _filled(convex_hull, sum(p.volume for p in pieces), sum(p.area for p in pieces))
 
 
-def convex(points: Floats, matter: float) -> Part | None:
+def convex_part(points: Floats, matter: float) -> Part | None:
     """Return the hull of points (N, 3) as a part that holds `matter` [m3] at most; None where they span nothing."""
     convex_hull = hull(points)
     if convex_hull is None or convex_hull[2] <= 0:
@@ -121,8 +112,9 @@ def components(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
 def _weld_vertices(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
     """Return the mesh with vertices at the same place made one, without the faces that this makes degenerate."""
     span = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
-    grid = np.round((points - points.min(axis=0)) / (span * WELD)).astype(np.int64)
-    _, first, label = np.unique(_hash(grid), return_index=True, return_inverse=True)
+    # at most 2^20 cells a side: three fit in 63 bits
+    x, y, z = np.minimum(np.round((points - points.min(axis=0)) / (span * WELD)).astype(np.int64), (1 << 20) - 1).T
+    _, first, label = np.unique((x << 40) | (y << 20) | z, return_index=True, return_inverse=True)
     faces = label[faces]
     proper = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     return points[first], faces[proper]
@@ -142,7 +134,7 @@ def _compact(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
     return points[inside], index.reshape(faces.shape)
 
 
-def _whole(faces: Ints, label: Ints) -> NDArray[np.bool_]:
+def _whole(faces: Ints, label: Ints) -> Bools:
     """Return (F,) whether the face's label is a closed surface: every edge of its faces used once in each direction."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     size = int(faces.max(initial=0)) + 1
@@ -193,12 +185,6 @@ def _labels(a: Ints, b: Ints, count: int) -> Ints:
     """Return a label for each of `count` things, of which a (N,) and b (N,) are connected."""
     graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(count, count))
     return np.asarray(connected_components(graph, directed=False)[1])
-
-
-def _hash(grid: Ints) -> Ints:
-    """Return one number per grid cell; the grid has at most 2^20 cells a side, so three fit in 63 bits."""
-    low = np.minimum(grid, (1 << 20) - 1)
-    return (low[:, 0] << 40) | (low[:, 1] << 20) | low[:, 2]
 
 
 def _part(points: Floats, faces: Ints) -> Part | None:
@@ -307,17 +293,21 @@ def qhull_of(points: Floats) -> ConvexHull | None:
         return None
 
 
-def outside(points: Floats, planes: Floats) -> Floats:
+def distances_outside(points: Floats, planes: Floats) -> Floats:
     """Return how far points (P, 3) are outside of a convex piece, by the planes (F, 4) of its faces; negative within."""
     return np.asarray((points @ planes[:, :3].T + planes[:, 3]).max(axis=1))
 
 
+def even_directions(count: int) -> Floats:
+    """Return unit vectors (count, 3), evenly spread along a spiral."""
+    k = np.arange(count) + 0.5
+    polar, turn = np.arccos(1 - 2 * k / count), np.pi * (1 + 5**0.5) * k
+    return np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
+
+
 def extremes(points: Floats, most: int = MAX_HULL) -> Floats:
     """Return at most so many of the points: those furthest along the axes and along evenly spread directions, then what their hull leaves out furthest."""
-    k = np.arange(most - 6) + 0.5
-    polar, turn = np.arccos(1 - 2 * k / (most - 6)), np.pi * (1 + 5**0.5) * k
-    directions = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
-    directions = np.concatenate([np.eye(3), -np.eye(3), directions])
+    directions = np.concatenate([np.eye(3), -np.eye(3), even_directions(most - 6)])
     chosen = np.unique(np.argmax(points @ directions.T, axis=0))
     while len(chosen) < most:
         further = _left_out(points, chosen)[: most - len(chosen)]

@@ -7,13 +7,10 @@ it adds lies along edges and at corners.
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
+from pipeline.arrays import Floats, Ints
 from pipeline.sources.meshes.mesh_solids import normals
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NEAR = 0.005  # [m] that a box may stand out beyond what it replaces: less than a fingertip feels
 LOWER = 2e-4  # [m] that it may reach below

@@ -9,12 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.sources.reasons import SourceError
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 BOM = b"\xef\xbb\xbf"
 MAX_OBJ = 64 << 20  # bytes
@@ -141,29 +138,17 @@ def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
 
 
 def _set(entry: MtlMaterial, key: str, rest: str) -> MtlMaterial:
-    changes: dict[str, object] = {}
-    if key == "Kd":
-        rgb = _finite(rest.split()[:3])
-        changes = {"diffuse": tuple(min(max(v, 0.0), 1.0) for v in rgb)} if len(rgb) == 3 else {}
-    elif key in {"d", "Tr"}:
-        value = _finite(rest.split()[:1])
-        if value:
-            clear = min(max(value[0], 0.0), 1.0)
-            changes = {"opacity": clear if key == "d" else 1 - clear}
-    elif key == "Ns":
-        value = _finite(rest.split()[:1])
-        changes = {"shininess": value[0]} if value else {}
-    elif key == "Pm":
-        value = _finite(rest.split()[:1])
-        changes = {"metallic": min(max(value[0], 0.0), 1.0)} if value else {}
-    elif key == "map_Kd":
-        changes = {"map": _without_options(rest)}
-    return replace(entry, **changes)  # type: ignore[arg-type]
-
-
-def _without_options(rest: str) -> str:
-    """Drop options like `-s 1 1 1` before the file's name, which may contain blanks."""
-    return re.sub(r"^(-[a-zA-Z]+\s+((-?[\d.]+|on|off)\s+)*)+", "", rest).strip()
+    if key == "map_Kd":  # without options like `-s 1 1 1` before the file's name, which may contain blanks
+        return replace(entry, map=re.sub(r"^(-[a-zA-Z]+\s+((-?[\d.]+|on|off)\s+)*)+", "", rest).strip())
+    values = _finite(rest.split()[: 3 if key == "Kd" else 1])
+    shares = [min(max(v, 0.0), 1.0) for v in values]
+    if key == "Kd" and len(shares) == 3:
+        return replace(entry, diffuse=(shares[0], shares[1], shares[2]))
+    if key == "Ns" and values:
+        return replace(entry, shininess=values[0])
+    if key == "Pm" and shares:
+        return replace(entry, metallic=shares[0])
+    return replace(entry, opacity=shares[0] if key == "d" else 1 - shares[0]) if key in {"d", "Tr"} and shares else entry
 
 
 def _finite(words: Sequence[str]) -> list[float]:

@@ -7,13 +7,10 @@ carcass felt. Where nothing comes, a collider's surface may be where it likes.
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
+from pipeline.arrays import Bools, Floats, Ints
 from pipeline.geometry.compiled import compiled
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 CELLS = 1_500_000  # of a grid at most
 AIR = 2  # cells about the body
@@ -46,7 +43,7 @@ def make_reach_test(hulls: Sequence[Floats], planes: Sequence[Floats], cell: flo
 
 
 @compiled
-def _fill(full: Bools, planes: Floats, start: Floats, cell: float, first: NDArray[np.int64], last: NDArray[np.int64]) -> None:
+def _fill(full: Bools, planes: Floats, start: Floats, cell: float, first: Ints, last: Ints) -> None:
     """Mark the cells from `first` to `last` that a convex piece meets, by the planes (F, 4) of its faces."""
     for i in range(first[0], last[0]):
         for j in range(first[1], last[1]):

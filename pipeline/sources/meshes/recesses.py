@@ -5,9 +5,8 @@ of that off at both. Where a recess is so deep that neither would be within what
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
 
 BOARD, WIDE = 0.06, 0.08  # [m] a board is no thicker, and at least so wide and high
 LEAST = 0.004  # [m] that is left of it

@@ -3,11 +3,9 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.sources.meshes.mesh_solids import Part, convex
-
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
+from pipeline.sources.meshes.mesh_solids import Part, convex_part
 
 STAVES = 6  # pieces that are taken for a ring
 FEWEST, MOST = 3, 12  # sectors of a vessel
@@ -65,7 +63,7 @@ def with_floor(pieces: Sequence[Part]) -> tuple[Sequence[Part], Floats]:
         within = (turns[1] >= turns[0].min() - 0.02) & (turns[1] <= turns[0].max() + 0.02)
         covered |= within
         axis = np.array([[*middle, z] for z in (bottom, top)])
-        part = convex(np.concatenate([sector.hull, floor.hull[within], axis]), sector.volume + floor.volume / len(sectors))
+        part = convex_part(np.concatenate([sector.hull, floor.hull[within], axis]), sector.volume + floor.volume / len(sectors))
         sliced.append(part or sector)
     return (sliced if covered.all() else pieces), middle
 

@@ -10,13 +10,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.meshes.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_VERTICES, ObjFile, ObjGroup
 from pipeline.sources.meshes.textures import MAX_PIXELS
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float64]
 MAX_SCENE = 64 << 20  # bytes
 COMPRESSED = (b"KHR_draco_mesh_compression", b"EXT_meshopt_compression")
 

@@ -1,13 +1,10 @@
 """Hulls of no more sides than PhysX takes. What has more it makes anew, and a level top comes out lower or askew: a cup on a round table turned by 1.7 degrees."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from pipeline.sources.meshes.mesh_solids import LEFT_OUT, hull, outside, qhull_of
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from pipeline.arrays import Floats, Ints
+from pipeline.sources.meshes.mesh_solids import LEFT_OUT, distances_outside, hull, qhull_of
 
 SIDES = 64
 ALIKE = 3  # decimals of normals, and of distances [m], by which two sides are one
@@ -25,7 +22,7 @@ def with_few_sides(corners: Floats, faces: Ints, off: float) -> tuple[Floats, In
         return corners, faces
     chosen, kept, left = _outlines(corners), corners, np.inf
     while left > LEFT_OUT and (within := _within(corners[chosen])):
-        away = outside(corners, within.equations)
+        away = distances_outside(corners, within.equations)
         kept, left = corners[chosen], float(away.max())
         chosen = np.append(chosen, int(np.argmax(away)))
     fewer = hull(kept) if left <= off else None

@@ -1,11 +1,9 @@
 """Soft things as they lie, and cushions with level tops: what lies on a swell rolls, where a real one gives way."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, convex, extremes
-
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, convex_part, extremes
 
 CORNERS = 8  # of the outline on which a soft thing lies, and of a level top, at most
 SOLE = 0.8  # share of its outline that a soft thing lies on
@@ -17,7 +15,7 @@ def level_top(part: Part, lift: float) -> Part:
     top = float(part.hull[:, 2].max())
     upper = _outline(part.hull[part.hull[:, 2] > top - lift])
     level = np.column_stack([upper[:, :2], np.full(len(upper), top)])  # all of its corners stay, however many the sides have
-    return convex(np.concatenate([extremes(part.hull, MAX_HULL - len(level)), level]), part.volume) or part
+    return convex_part(np.concatenate([extremes(part.hull, MAX_HULL - len(level)), level]), part.volume) or part
 
 
 def _outline(points: Floats) -> Floats:
@@ -33,4 +31,4 @@ def lie_flat(part: Part) -> Part:
     low, high = part.hull[:, 2].min(), part.hull[:, 2].max()
     sole = np.column_stack([middle[:2] + SOLE * (around[:, :2] - middle[:2]), np.full(len(around), low)])
     above = part.hull[part.hull[:, 2] > low + RISE * (high - low)]
-    return convex(np.concatenate([extremes(above, MAX_HULL - len(sole)), sole]), part.volume) or part
+    return convex_part(np.concatenate([extremes(above, MAX_HULL - len(sole)), sole]), part.volume) or part

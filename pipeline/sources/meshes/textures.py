@@ -31,4 +31,5 @@ def prepare_texture(data: bytes, where: str, limit: int) -> tuple[bytes, str]:
             small.save(out, "PNG", optimize=False, compress_level=6)
             return out.getvalue(), "png"
     except (UnidentifiedImageError, OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise SourceError("missing_texture", where, f"is no readable PNG or JPEG ({str(error)[:60]})") from error
+        told = str(error).split(" <")[0]  # without the buffer's address, which is another in every run
+        raise SourceError("missing_texture", where, f"is no readable PNG or JPEG ({told[:60]})") from error

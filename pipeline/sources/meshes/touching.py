@@ -10,21 +10,18 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from pipeline.arrays import Bools, Floats, Ints
 from pipeline.card import Category
 from pipeline.geometry.compiled import compiled
-from pipeline.sources.meshes.feet import without_feet
-from pipeline.sources.meshes.legs import LOW, UNDER, blocks_under, legs_under, narrow_bars
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, extremes, qhull_of
 from pipeline.sources.meshes.near_boxes import NEAR
 from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors, with_floor
-from pipeline.sources.meshes.rows import blocks
+from pipeline.sources.meshes.small_parts import LOW, UNDER, blocks_under, legs_under, narrow_bars, rows_as_blocks, without_feet
 from pipeline.sources.meshes.soft_shapes import level_top, lie_flat
 
-Floats = NDArray[np.float64]
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
 ROOMY = 50.0  # boards across each other: their box holds so many times what they do, and no hull of theirs is looked at
@@ -55,7 +52,7 @@ Offer = tuple[float, tuple[int, ...]]  # how much changes, who becomes one
 
 
 @dataclass(frozen=True, slots=True)
-class Felt:
+class TouchTolerances:
     """How far a surface may be off [m]: where things lie (faces upwards), at the sides, from below; `yielding` grows with height to LEFT_ALONE.
 
     What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt, higher than `over` nothing.
@@ -84,18 +81,18 @@ class Felt:
 
 FELT = MappingProxyType(  # by what cards say
     {
-        "seen": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
-        "block": Felt(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
-        "soft": Felt(SOFT, SOFT, SOFT, soft=True),
-        "yielding": Felt(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True),
-        "closed": Felt(BUMPED, closed=True),
-        "handled": Felt(BUMPED, closed=True),
+        "seen": TouchTolerances(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
+        "block": TouchTolerances(LEFT_ALONE, LEFT_ALONE, LEFT_ALONE, whole=True),
+        "soft": TouchTolerances(SOFT, SOFT, SOFT, soft=True),
+        "yielding": TouchTolerances(LEFT_ALONE, TOUCHED, LEFT_ALONE, yielding=True, closed=True),
+        "closed": TouchTolerances(BUMPED, closed=True),
+        "handled": TouchTolerances(BUMPED, closed=True),
     }
 )
 OFF = MappingProxyType({"closed": HELD, "handled": BUMPED})  # of small things
 
 
-def touch_tolerances(category: Category, *, opens: bool) -> Felt:
+def touch_tolerances(category: Category, *, opens: bool) -> TouchTolerances:
     """Return how truly a thing of a category is felt: hands come to what is small and to what opens, bodies to other furniture."""
     if category.felt:
         felt = FELT[category.felt]
@@ -103,17 +100,17 @@ def touch_tolerances(category: Category, *, opens: bool) -> Felt:
             return replace(felt, sides=OFF[category.felt], down=OFF[category.felt])
         return replace(felt, sides=SOFT, down=LEFT_ALONE) if category.felt == "closed" and category.mount == "wall" else felt
     if category.loose:
-        return Felt(vessel=True)
+        return TouchTolerances(vessel=True)
     if opens:
-        return Felt()
+        return TouchTolerances()
     if category.super in CUSHIONED:  # under a sofa's arm the drawer of a side table comes out
         under = SEAT if category.tuck == "seat" or category.super == "bed" else UNDER
-        return Felt(GIVES, BETWEEN, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
+        return TouchTolerances(GIVES, BETWEEN, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
     over = OVER if category.mount == "floor" else ANY
-    return Felt(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED, legs=LOW)
+    return TouchTolerances(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED, legs=LOW)
 
 
-def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
+def simplify_pieces(pieces: Sequence[Part], how: TouchTolerances) -> tuple[Part, ...]:
     """Return convex pieces [m] as few as they can be felt for the same by."""
     if not pieces:
         return ()
@@ -126,14 +123,15 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
     pieces = blocks_under(pieces, low + how.under)
     if how.soft:
         pieces = [lie_flat(combine_parts(pieces))]
-    if how.closed:
-        pieces = discs(pieces)
+    if how.closed:  # the staves of each ring, all of them between the same heights, are one
+        levels = [[pieces[k] for k in level] for level in same_height(pieces)]
+        pieces = [disc for level in levels for disc in (level if len(level) < STAVES else [combine_parts(level)])]
     if how.sides <= TOUCHED:
         pieces = without_feet(pieces)
     elif how.up <= TOUCHED:
-        pieces = blocks(pieces)
+        pieces = rows_as_blocks(pieces)
     allowed = _tolerance(pieces, how)
-    fewer_pieces = felt_of(fewer(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT, sag=how.sag), allowed)
+    fewer_pieces = drop_unfelt(merge_by_touch(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT, sag=how.sag), allowed)
     if how.vessel:
         fewer_pieces = _with_floors(fewer_pieces, pieces, allowed)
     if legs:
@@ -142,7 +140,7 @@ def simpler(pieces: Sequence[Part], how: Felt) -> tuple[Part, ...]:
 
 
 def _with_floors(pieces: Sequence[Part], original: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
-    """Return the sectors of a bowl, each with its slice of the floor that they stand around, in place of sectors and floor; see `fewer` for `allowed`."""
+    """Return the sectors of a bowl, each with its slice of the floor that they stand around, in place of sectors and floor; see `merge_by_touch` for `allowed`."""
     sliced, middle = with_floor(pieces)
     planes = [_planes(p.hull) for p in original]
 
@@ -153,7 +151,7 @@ def _with_floors(pieces: Sequence[Part], original: Sequence[Part], allowed: Allo
     return tuple(sliced) if all(_deviation(p.hull, planes, between) is not None for p in sliced) else tuple(pieces)
 
 
-def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
+def drop_unfelt(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
     """Return the pieces without those that the others feel the same without: a basin's bottom close above its worktop.
 
     Less is allowed than for a hull, which bears something: what is deep in a vessel is its floor.
@@ -172,7 +170,7 @@ def felt_of(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
     return tuple(pieces[k] for k in sorted(kept))
 
 
-def _tolerance(pieces: Sequence[Part], how: Felt) -> Allowed:
+def _tolerance(pieces: Sequence[Part], how: TouchTolerances) -> Allowed:
     points = np.concatenate([p.hull for p in pieces])
     low, high = points.min(axis=0), points.max(axis=0)
     least = SHARE * float((high - low).min())
@@ -203,7 +201,7 @@ class _Hollow:
     radius: float
     depth: float
 
-    def within(self, at: Floats, normals: Floats) -> NDArray[np.bool_]:
+    def within(self, at: Floats, normals: Floats) -> Bools:
         """Return (P,) whether points (P, 3) of faces with normals (P, 3) are of its inside."""
         away = at[:, :2] - self.middle
         inside = (np.linalg.norm(away, axis=1) < self.radius) & (at[:, 2] >= self.heights[0]) & (at[:, 2] <= self.heights[1])
@@ -212,7 +210,7 @@ class _Hollow:
         return np.asarray(inside & inwards)
 
 
-def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
+def _hollows(pieces: Sequence[Part], how: TouchTolerances) -> list[_Hollow]:
     """Return the inside of a vessel, and those of the rings in other things: basins, drums."""
     rings = [list(pieces)] if how.vessel else [[pieces[k] for k in ring] for ring in same_height(pieces) if is_ring(pieces, ring)]
     hollows = []
@@ -231,13 +229,9 @@ def _hollows(pieces: Sequence[Part], how: Felt) -> list[_Hollow]:
     return hollows
 
 
-def discs(pieces: Sequence[Part]) -> list[Part]:
-    """Return the pieces with the staves of each ring, all of them between the same heights, as one."""
-    levels = [[pieces[k] for k in level] for level in same_height(pieces)]
-    return [disc for level in levels for disc in (level if len(level) < STAVES else [combine_parts(level)])]
-
-
-def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, rings: bool = True, sag: float = 0.0) -> tuple[Part, ...]:
+def merge_by_touch(
+    pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, rings: bool = True, sag: float = 0.0
+) -> tuple[Part, ...]:
     """Return convex pieces [m] merged as long as no surface point goes further from where it was than is `allowed` there.
 
     All at once where that may be, else the staves of `rings` in sectors, then pairs, those that change least first. Pieces whose boxes are
@@ -270,7 +264,7 @@ def fewer(pieces: Sequence[Part], allowed: Allowed, apart: float = TOUCHED, *, r
 def _merge_groups(
     pieces: Sequence[Part], rings: Sequence[list[int]], share: Callable[[Sequence[int], Floats], float | None], apart: float
 ) -> list[list[int]]:
-    """Return groups of pieces by index, merged from the `rings` and the single others; see `fewer`."""
+    """Return groups of pieces by index, merged from the `rings` and the single others; see `merge_by_touch`."""
     groups = [*rings, *([k] for k in range(len(pieces)) if not any(k in ring for ring in rings))]
     hulls, volumes = (list(v) for v in zip(*(_outer(np.concatenate([pieces[k].hull for k in group])) for group in groups), strict=True))
     boxes = [np.array([h.min(axis=0), h.max(axis=0)]) for h in hulls]
@@ -344,24 +338,25 @@ def _deviation(points: Floats, planes: Sequence[Floats], allowed: Allowed) -> fl
         off = np.minimum(*(allowed(left, np.tile(way, (len(left), 1))) for way in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))))
         if _away(left, [kept.equations], np.clip(off, TOUCHED, BUMPED)) > 1.0:
             return None
-        points, hull = kept.points, kept
-    corners, normals = points[hull.simplices], hull.equations[:, :3]
+        hull = kept
     worst = 0.0
     for count in SAMPLES:
-        at = spread(corners, count) if count else corners.mean(axis=1)
-        tolerance = allowed(at, np.repeat(normals, len(at) // len(corners), axis=0))
-        worst = _away(at, planes, tolerance)
+        at, normals = sample_hull(hull, count)
+        worst = _away(at, planes, allowed(at, normals))
         if worst > 1.0:
             return None
     return worst
 
 
-def spread(corners: Floats, count: int) -> Floats:
-    """Return points (F P, 3) spread over triangles (F, 3, 3), `count` intervals along a side."""
+def sample_hull(hull: ConvexHull, count: int) -> tuple[Floats, Floats]:
+    """Return points (P, 3) spread over the triangles of a hull, `count` intervals along a side, 0: their middles; and the normals there."""
+    corners, normals = hull.points[hull.simplices], hull.equations[:, :3]
+    if not count:
+        return corners.mean(axis=1), normals
     u, v = (k.ravel() for k in np.meshgrid(np.arange(count + 1), np.arange(count + 1), indexing="ij"))
     inside = u + v <= count
     weights = np.stack([u, v, count - u - v], axis=1)[inside] / count
-    return np.asarray(np.einsum("pk,fkd->fpd", weights, corners).reshape(-1, 3))
+    return np.einsum("pk,fkd->fpd", weights, corners).reshape(-1, 3), np.repeat(normals, len(weights), axis=0)
 
 
 def _away(points: Floats, planes: Sequence[Floats], tolerance: Floats) -> float:
@@ -371,7 +366,7 @@ def _away(points: Floats, planes: Sequence[Floats], tolerance: Floats) -> float:
 
 
 @compiled
-def _worst(points: Floats, tolerance: Floats, planes: Floats, start: NDArray[np.int64]) -> float:
+def _worst(points: Floats, tolerance: Floats, planes: Floats, start: Ints) -> float:
     """See `_away`: the planes (N, 4) of piece k are from start[k] on. A quarter is not looked at closely, nor what comes after a point beyond 1."""
     worst = 0.0
     for i in range(len(points)):

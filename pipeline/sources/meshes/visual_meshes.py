@@ -1,18 +1,20 @@
 """OBJ groups as visual meshes of an asset, with their materials and textures."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Material, Mesh
 from pipeline.sources.guarded import DRIVE, Folder
-from pipeline.sources.meshes.obj_file import MAX_MTL, MAX_OBJ, MtlMaterial, ObjFile, ObjGroup, parse_mtl, parse_obj
+from pipeline.sources.meshes.obj_file import MAX_MTL, MtlMaterial, ObjFile, ObjGroup, parse_mtl
 from pipeline.sources.meshes.textures import MAX_FILE, prepare_texture
 from pipeline.sources.reasons import SourceError
 
-Floats = NDArray[np.float64]
+T = TypeVar("T")
 
 
 @dataclass(slots=True)
@@ -56,12 +58,7 @@ class Palette:
 
     def own(self, color: tuple[float, float, float, float], roughness: float, image: bytes, where: str) -> int:
         """Return the index of a material that a mesh file brings along: linear `color` with opacity, the bytes of an image or none."""
-        texture = None
-        if image:
-            try:
-                texture = self._texture_name(*prepare_texture(image, where, self.texture_limit))
-            except SourceError as error:
-                self.notes.append(("missing_texture", f"{where}: {error.detail}"))
+        texture = self._noted(where, lambda: self._texture(image, where)) if image else None
         r, g, b = (1.0, 1.0, 1.0) if texture else color[:3]
         return self._material_index((round(r, 5), round(g, 5), round(b, 5)), color[3], texture, round(max(roughness, 0.2), 3))
 
@@ -73,21 +70,22 @@ class Palette:
         path = _without_drive(path)
         key = f"{base}/{path}"
         if key not in self._images:
-            self._images[key] = self._load(path, base)
+            self._images[key] = self._noted(path, lambda: self._texture(self.folder.read(path, MAX_FILE, base), path))
         return self._images[key]
 
-    def _load(self, path: str, base: str) -> str | None:
+    def _noted(self, path: str, read: Callable[[], T]) -> T | None:
+        """Return what `read` gives, or None with a note where it cannot be had."""
         try:
-            data, suffix = prepare_texture(self.folder.read(path, MAX_FILE, base), path, self.texture_limit)
+            return read()
         except SourceError as error:
             if error.code == "unsafe_path":
                 raise
             self.notes.append(("missing_texture", f"{path}: {error.detail}"))
             return None
-        return self._texture_name(data, suffix)
 
-    def _texture_name(self, data: bytes, suffix: str) -> str:
-        """Return the name under which image bytes are kept, each only once."""
+    def _texture(self, image: bytes, where: str) -> str:
+        """Return the name under which an image is kept, each only once."""
+        data, suffix = prepare_texture(image, where, self.texture_limit)
         known = next((name for name, blob in self.textures.items() if blob == data), None)
         if known:
             return known
@@ -99,14 +97,8 @@ class Palette:
         library = _without_drive(library)
         key = f"{base}/{library}"
         if key not in self._libraries:
-            self._libraries[key] = {}
-            if library:
-                try:
-                    self._libraries[key] = parse_mtl(self.folder.read(library, MAX_MTL, base))
-                except SourceError as error:
-                    if error.code == "unsafe_path":
-                        raise
-                    self.notes.append(("missing_texture", f"{library}: {error.detail}"))
+            read = self._noted(library, lambda: parse_mtl(self.folder.read(library, MAX_MTL, base))) if library else None
+            self._libraries[key] = read or {}
         return self._libraries[key]
 
 
@@ -115,12 +107,7 @@ def _without_drive(path: str) -> str:
     return path.replace("\\", "/").rsplit("/", 1)[-1] if DRIVE.match(path) else path
 
 
-def read_obj(folder: Folder, relative: str, base: str = "") -> ObjFile:
-    """Read an OBJ file of a folder."""
-    return parse_obj(folder.read(relative, MAX_OBJ, base), relative)
-
-
-def visual(group: ObjGroup, file: ObjFile, points: Floats, name: str, material: int, part: str = "") -> Mesh | None:
+def visual_mesh(group: ObjGroup, file: ObjFile, points: Floats, name: str, material: int, part: str = "") -> Mesh | None:
     """Return a group as a mesh; `points` (V, 3) are the file's vertices already in the object frame [m].
 
     A vertex is a (position, uv) pair. None for a group without a proper face.
@@ -131,20 +118,11 @@ def visual(group: ObjGroup, file: ObjFile, points: Floats, name: str, material: 
     if not len(faces):
         return None
     textured = len(file.uvs) > 0 and bool((uv_faces >= 0).all())
-    if not textured:
-        used, index = np.unique(faces, return_inverse=True)
-        return Mesh(name, points[used].astype(np.float32), index.reshape(faces.shape).astype(np.int32), material, None, part)
-    code = faces.astype(np.int64) * len(file.uvs) + uv_faces
-    pairs, index = np.unique(code, return_inverse=True)
-    vertices, uv = points[pairs // len(file.uvs)], file.uvs[pairs % len(file.uvs)]
-    return Mesh(
-        name,
-        vertices.astype(np.float32),
-        index.reshape(faces.shape).astype(np.int32),
-        material,
-        np.clip(uv, -1e4, 1e4).astype(np.float32),
-        part,
-    )
+    count = len(file.uvs) if textured else 1
+    pairs, index = np.unique(faces * count + uv_faces if textured else faces, return_inverse=True)
+    vertices, corners = points[pairs // count].astype(np.float32), index.reshape(faces.shape).astype(np.int32)
+    uv = np.clip(file.uvs[pairs % count], -1e4, 1e4).astype(np.float32) if textured else None
+    return Mesh(name, vertices, corners, material, uv, part)
 
 
 def _linear(value: float) -> float:

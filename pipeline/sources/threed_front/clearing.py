@@ -11,15 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from pipeline.arrays import Bools, Floats
 from pipeline.sources.threed_front.furniture import Placed, shared_shape
 from pipeline.sources.threed_front.notches import fill_columns
 from pipeline.sources.threed_front.supports import supports
 from pipeline.taxonomy import Taxonomy
-
-Floats = NDArray[np.float64]
 
 SLACK = 0.004  # [m] what boxes may share: rounding of sources
 GAP = 0.003  # [m] that is left between what was separated
@@ -41,7 +39,7 @@ class Room:
     pieces: Sequence[Placed]
     half: Floats
     axes: Floats
-    rivals: NDArray[np.bool_]
+    rivals: Bools
     grown: Polygon
     walls: tuple[Floats, Floats, Floats, Floats]
 
@@ -63,7 +61,7 @@ class Room:
         return np.where(self.rivals[k], np.maximum(depths.min(1), 0.0), 0.0), depths, axes
 
 
-def clear(pieces: Sequence[Placed], floor: Polygon, taxonomy: Taxonomy, farthest: float) -> list[Placed]:
+def move_apart(pieces: Sequence[Placed], floor: Polygon, taxonomy: Taxonomy, farthest: float) -> list[Placed]:
     """Return the pieces of a room, those in walls or in each other moved by `farthest` [m] at most, with a note each.
 
     What rests on a piece moves with it; seats stay under tables, small things and lamps where they are. A piece that finds no free

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
-Floats = NDArray[np.float64]
+from pipeline.arrays import Bools, Floats
 
 SNAP = 1e-4  # [m] joins triangles whose shared corners differ by rounding
 SIMPLIFY = 0.01  # [m] flattens what is no corner of a room
@@ -64,7 +63,7 @@ def clean(shape: Polygon) -> Floats | None:
     return np.roll(kept, -int(np.lexsort((kept[:, 1], kept[:, 0]))[0]), axis=0)
 
 
-def _straight(ring: Floats) -> NDArray[np.bool_]:
+def _straight(ring: Floats) -> Bools:
     """Return which corners (n,) lie within SIMPLIFY / 2 of the line between their neighbours."""
     before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
     span = after - before

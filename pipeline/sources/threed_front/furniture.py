@@ -6,18 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from pipeline.arrays import Floats
 from pipeline.entities.home import Placement
 from pipeline.sources.settings import FrontFilters
-from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest
+from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest_category
 from pipeline.sources.threed_front.house_file import FARTHEST, Child, Furniture
 from pipeline.sources.threed_front.notches import overlap_share
 from pipeline.sources.threed_front.poses import Box, Pose, place, yaw_and_tilt
 from pipeline.taxonomy import Taxonomy
-
-Floats = NDArray[np.float64]
 
 STANDING, TALL = 0.1, 1.0  # [m] a lamp whose foot is lower and that is higher hangs from no ceiling
 BELOW = 0.05  # [m] under the floor: rounding of the source
@@ -81,15 +79,11 @@ def category_of(record: Furniture, taxonomy: Taxonomy) -> str | None:
     named = stated_category(record, taxonomy)
     if named or record.box is None:
         return named
-    return likeliest(np.array(record.box), taxonomy.of_kind(*record.kinds))
+    return likeliest_category(np.array(record.box), taxonomy.of_kind(*record.kinds))
 
 
 def place_furniture(  # noqa: PLR0911 - one return per reason
-    child: Child,
-    record: Furniture,
-    models: Mapping[str, Model],
-    taxonomy: Taxonomy,
-    limits: FrontFilters,
+    child: Child, record: Furniture, models: Mapping[str, Model], taxonomy: Taxonomy, limits: FrontFilters
 ) -> Placed | tuple[str, str]:
     """Return the object, whatever room it lies in, or (reason, detail) for leaving it out."""
     if record.valid is not True:
@@ -123,7 +117,7 @@ def place_furniture(  # noqa: PLR0911 - one return per reason
     return piece
 
 
-def inside(piece: Placed, floor: Polygon) -> float:
+def share_inside(piece: Placed, floor: Polygon) -> float:
     """Return the share of an object's footprint that lies on a floor, in whole per cent: what is said of it is what counts."""
     footprint = piece.footprint()
     return round(float(footprint.intersection(floor).area / footprint.area), 2)
@@ -157,7 +151,7 @@ def shared_shape(a: Placed, b: Placed) -> float:
     return min(boxes, overlap_share((first.pose, first.shape), (second.pose, second.shape)))
 
 
-def overlapping(objects: list[Placed], limits: FrontFilters, taxonomy: Taxonomy) -> dict[int, tuple[int, float]]:
+def find_overlaps(objects: list[Placed], limits: FrontFilters, taxonomy: Taxonomy) -> dict[int, tuple[int, float]]:
     """Return {index of the object to drop: (index of what it is in, share)}.
 
     Rule: largest box first, an object is dropped when it shares more than `max_overlap` of the smaller one's volume

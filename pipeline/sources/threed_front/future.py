@@ -5,24 +5,24 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline import taxonomy
+from pipeline.arrays import Floats, Ints
 from pipeline.entities.asset import Asset, Link, Mesh
 from pipeline.entities.files import load_asset, save_asset
 from pipeline.sources.densities import density
 from pipeline.sources.guarded import Folder, read_json
-from pipeline.sources.meshes.colliders import POCKET, Ints, link, solids
+from pipeline.sources.meshes.colliders import POCKET, build_link, solids
+from pipeline.sources.meshes.obj_file import MAX_OBJ, parse_obj
 from pipeline.sources.meshes.touching import touch_tolerances
-from pipeline.sources.meshes.visual_meshes import Palette, read_obj, visual
+from pipeline.sources.meshes.visual_meshes import Palette, visual_mesh
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
-from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest, unit_factor
+from pipeline.sources.sizes import LONGEST, MIN_SIZE, likeliest_category, unit_factor
 from pipeline.sources.threed_front.furniture import mirrored_id
 from pipeline.sources.threed_front.model_hints import Hint
 from pipeline.sources.threed_front.poses import Box, to_ours
 
-Floats = NDArray[np.float64]
 Notes = list[tuple[str, str]]
 NAMES = ("category", "super-category", "style", "theme", "material")
 FLIP = np.array([-1.0, 1.0, 1.0])
@@ -75,7 +75,7 @@ def read_model(models: Folder, info: ModelInfo, limits: ModelLimits, licence: st
     origin. Raises SourceError for what cannot be an asset.
     """
     folder, words = models.sub(info.model_id), taxonomy.load()
-    file = read_obj(folder, "raw_model.obj")
+    file = parse_obj(folder.read("raw_model.obj", MAX_OBJ), "raw_model.obj")
     used = np.unique(np.concatenate([g.faces.ravel() for g in file.groups]))
     low, high = file.vertices[used].min(axis=0), file.vertices[used].max(axis=0)
     extent = (high - low)[[0, 2, 1]]
@@ -89,14 +89,14 @@ def read_model(models: Folder, info: ModelInfo, limits: ModelLimits, licence: st
     visuals: list[Mesh] = []
     collisions: list[tuple[Floats, Ints]] = []
     for group in file.groups:
-        mesh = visual(group, file, points, f"mesh_{len(visuals):03d}", palette.index(file.library, "", group.material))
+        mesh = visual_mesh(group, file, points, f"mesh_{len(visuals):03d}", palette.index(file.library, "", group.material))
         if mesh:
             visuals.append(mesh)
             collisions.append((points, group.faces))
     known = words.categories[category]
     kind, how = known.super, touch_tolerances(known, opens=False)
     matter = solids("base", collisions, limits, POCKET * float(np.linalg.norm(size)) if limits.cut == "all" else None)
-    base = link("base", visuals, matter, density(kind, info.material, category), kind, how=how)
+    base = build_link("base", visuals, matter, density(kind, info.material, category), kind, how=how)
     if not base.visuals or not base.colliders:
         raise SourceError("not_obj", info.model_id, "has no face with an area")
     asset_id = f"ff_{''.join(c if c.isalnum() and c.isascii() else '_' for c in info.model_id.lower())}"
@@ -121,7 +121,7 @@ def identify_category(info: ModelInfo, hint: Hint, extent: Floats) -> tuple[str,
     if category is None:
         members = words.of_kind(info.category, info.super_category, hint.kind())
         mounted = [m for m in members if words.categories[m].mount in hint.mounts()] or members
-        category = hint.category() or likeliest(extent * unit_factor(extent, declared, None), mounted)
+        category = hint.category() or likeliest_category(extent * unit_factor(extent, declared, None), mounted)
         if category is None:
             raise SourceError("unknown_category", info.model_id, named)
         notes.append(("category_inferred", f"{category}, for {named}"))

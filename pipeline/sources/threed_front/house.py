@@ -21,10 +21,10 @@ from pipeline.sources.source import Task
 from pipeline.sources.threed_front import wall_openings
 from pipeline.sources.threed_front.floors import Floor, outline
 from pipeline.sources.threed_front.house_file import HouseFile, MeshRecord, RoomRecord, extract_arrays, parse_house
+from pipeline.sources.threed_front.house_rows import ReadRoom, object_row, opening_row, room_row, scene_row
 from pipeline.sources.threed_front.opening_evidence import MESHES, OpeningEvidence, from_furniture, from_mesh
 from pipeline.sources.threed_front.poses import to_ours, yaw_and_tilt
 from pipeline.sources.threed_front.room_assignment import fill
-from pipeline.sources.threed_front.rows import ReadRoom, object_row, opening_row, room_row, scene_row
 
 # Absurd counts: real houses have up to some 30 rooms, 60 openings, 60 objects in a room, 2,000 floor triangles.
 MAX_ROOMS, MAX_CHILDREN, MAX_HOLES = 300, 20_000, 1000

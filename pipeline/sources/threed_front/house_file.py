@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.sources.reasons import Row, SourceError, reject
 
-Floats = NDArray[np.float64]
 ORIGIN, NO_TURN, ONE = np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), np.ones(3)
 _ARRAYS = re.compile(rb'"(xyz|faces|normal|uv)"\s*:\s*\[([-+0-9.eEnul,\s]*)\]')  # numbers and null: NaN stays, to be refused
 MAX_AREA = 1e5  # [m2] no room is larger: such a figure says nothing

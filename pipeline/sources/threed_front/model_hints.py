@@ -10,9 +10,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline import taxonomy
+from pipeline.arrays import Floats
 from pipeline.sources.threed_front.furniture import stated_category
 from pipeline.sources.threed_front.house import load_house
 from pipeline.sources.threed_front.house_file import Furniture
@@ -34,7 +34,7 @@ class Hint:
     categories: Counter[str] = field(default_factory=Counter)
     kinds: Counter[str] = field(default_factory=Counter)
 
-    def box(self) -> NDArray[np.float64] | None:
+    def box(self) -> Floats | None:
         """Return the middle one of the declared boxes per axis (3,) [m], or None."""
         return np.median(np.array(self.boxes), axis=0) if self.boxes else None
 

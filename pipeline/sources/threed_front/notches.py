@@ -4,13 +4,10 @@ import functools
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Bools, Floats
 from pipeline.entities.asset import Mesh
 from pipeline.sources.threed_front.poses import Pose
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 CELLS = (24, 24, 8)  # across the box: width, depth, height
 DENSITY = 1.5  # points per cell along a triangle's sides
@@ -71,7 +68,7 @@ def fill_columns(bits: bytes) -> bytes:
     return np.packbits(np.broadcast_to(columns, CELLS)).tobytes()
 
 
-def _mask(bits: bytes) -> Mask:
+def _mask(bits: bytes) -> Bools:
     count = int(np.prod(CELLS))
     if not bits:
         return np.ones(CELLS, np.bool_)

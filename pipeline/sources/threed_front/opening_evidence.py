@@ -14,12 +14,11 @@ from typing import Literal
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from pipeline.arrays import Floats
 from pipeline.sources.threed_front.poses import to_ours
 
-Floats = NDArray[np.float64]
 Evidence = Literal["door", "window", "hole"]
 Origin = Literal["reveal", "hole", "frame", "record"]
 

@@ -80,7 +80,11 @@ def _merge_group(group: Sequence[OpeningEvidence]) -> OpeningEvidence:
     opening = widest
     if widest.width - (high - low) <= WIDER:
         opening = replace(widest.between(low, high), sill=max(h.sill for h in best), top=min(h.top for h in best))
-    return _fit_depth(replace(opening, evidence=evidence, origin=best[0].origin), [h for h in best if h.depth > 0.0] or upright)
+    # in the middle of the wall that the reveals go through together, as deep as they are
+    depths = [(opening.offset(h.centre)[1], h.depth / 2) for h in ([h for h in best if h.depth > 0.0] or upright)]
+    back, front = min(at - half for at, half in depths), max(at + half for at, half in depths)
+    centre = opening.centre + opening.across * (back + front) / 2
+    return replace(opening, evidence=evidence, origin=best[0].origin, centre=centre, depth=front - back)
 
 
 def _common(spans: list[tuple[float, float]]) -> tuple[float, float]:
@@ -95,13 +99,6 @@ def _common(spans: list[tuple[float, float]]) -> tuple[float, float]:
                 continue
         intervals.append((low, high))
     return min(low for low, _ in intervals), max(high for _, high in intervals)
-
-
-def _fit_depth(hole: OpeningEvidence, reveals: Sequence[OpeningEvidence]) -> OpeningEvidence:
-    """Return a hole in the middle of the wall that its reveals go through together, as deep as they are."""
-    low = min(hole.offset(h.centre)[1] - h.depth / 2 for h in reveals)
-    high = max(hole.offset(h.centre)[1] + h.depth / 2 for h in reveals)
-    return replace(hole, centre=hole.centre + hole.across * (low + high) / 2, depth=high - low)
 
 
 def _apart(holes: list[OpeningEvidence]) -> list[OpeningEvidence]:

@@ -10,11 +10,11 @@ from pipeline import taxonomy
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters
 from pipeline.sources.source import Task
-from pipeline.sources.threed_front.clearing import clear
-from pipeline.sources.threed_front.furniture import Placed, inside, overlapping, place_furniture
+from pipeline.sources.threed_front.clearing import move_apart
+from pipeline.sources.threed_front.furniture import Placed, find_overlaps, place_furniture, share_inside
 from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord
-from pipeline.sources.threed_front.rows import ReadRoom
-from pipeline.sources.threed_front.supports import floating, supports
+from pipeline.sources.threed_front.house_rows import ReadRoom
+from pipeline.sources.threed_front.supports import hangs_in_air, supports
 
 MAX_OBJECTS = 500  # of one room
 HALF = 0.4  # share of a footprint in a room, from which on a piece is moved into it
@@ -65,7 +65,7 @@ def _home(piece: Placed, room: ReadRoom | None, rooms: list[ReadRoom], limits: F
 
     Where pieces are moved out of walls, one that is half in a wall lies in the room that holds most of it.
     """
-    shares = ((inside(piece, r.polygon), r) for r in rooms)
+    shares = ((share_inside(piece, r.polygon), r) for r in rooms)
     ordered = sorted(shares, key=lambda there: (there[1] is not room, -there[0]))
     within = next((r for share, r in ordered if share >= limits.min_inside), None)
     if within is not None or not limits.max_shift:
@@ -77,7 +77,7 @@ def _home(piece: Placed, room: ReadRoom | None, rooms: list[ReadRoom], limits: F
 def _outside(piece: Placed, room: ReadRoom | None, record: RoomRecord) -> str:
     if room is None:
         return f"{record.instance or record.type} was left out, and it lies in no other room"
-    return f"{inside(piece, room.polygon):.0%} of the footprint inside"
+    return f"{share_inside(piece, room.polygon):.0%} of the footprint inside"
 
 
 def _keep(uid: str, room: ReadRoom, candidates: list[Placed], limits: FrontFilters, rejects: list[Row]) -> None:
@@ -90,13 +90,13 @@ def _keep(uid: str, room: ReadRoom, candidates: list[Placed], limits: FrontFilte
     if len(candidates) > MAX_OBJECTS:
         raise SourceError("too_large", where, f"{len(candidates)} objects in {where}")
     if limits.max_shift:
-        moved, candidates = clear(candidates, room.polygon, words, limits.max_shift), []
+        moved, candidates = move_apart(candidates, room.polygon, words, limits.max_shift), []
         for piece in moved:
-            if inside(piece, room.polygon) < limits.min_inside:
+            if share_inside(piece, room.polygon) < limits.min_inside:
                 refuse(piece, "outside_room", _outside(piece, room, room.record))
             else:
                 candidates.append(piece)
-    dropped = overlapping(candidates, limits, words)
+    dropped = find_overlaps(candidates, limits, words)
     for i, piece in enumerate(candidates):
         if i in dropped:
             j, share = dropped[i]
@@ -106,7 +106,7 @@ def _keep(uid: str, room: ReadRoom, candidates: list[Placed], limits: FrontFilte
             refuse(piece, *note)
         room.objects.append(piece)
     room.supports = supports(room.objects, words)
-    while any(lost := [floating(o, on, words) for o, on in zip(room.objects, room.supports, strict=True)]):
+    while any(lost := [hangs_in_air(o, on, words) for o, on in zip(room.objects, room.supports, strict=True)]):
         for piece, gone in zip(room.objects, lost, strict=True):
             if gone:  # a small thing whose support was left out
                 refuse(piece, "no_support")

@@ -9,7 +9,7 @@ from pipeline.sources.guarded import Folder
 from pipeline.sources.reasons import Row, reject
 from pipeline.sources.rows import HouseRows, LibraryRows, Scale
 from pipeline.sources.settings import PreprocessSettings
-from pipeline.sources.source import Listing, Reading, Source, Task, below, require_folders
+from pipeline.sources.source import Listing, Reading, Source, Task, folders_below, require_folders
 from pipeline.sources.threed_front.furniture import Model
 from pipeline.sources.threed_front.future import ModelInfo, read_model, read_model_info
 from pipeline.sources.threed_front.house import read_house
@@ -31,7 +31,7 @@ class ThreedFront(Source):
     def recognise(self, folder: Path) -> Path | None:
         """Return the folder with both halves, however the archives were unpacked."""
         around = (folder.parent,) if folder.name in {HOUSES, MODELS, TEXTURES} else ()
-        places = (folder, *below(folder, LEVELS, {HOUSES, MODELS, TEXTURES}), *around)
+        places = (folder, *folders_below(folder, LEVELS, {HOUSES, MODELS, TEXTURES}), *around)
         return next((p for p in places if next((p / HOUSES).glob("*.json"), None) and (p / MODELS / "model_info.json").is_file()), None)
 
     def list(self, root: Path, settings: PreprocessSettings, *, houses: bool = True) -> Listing:

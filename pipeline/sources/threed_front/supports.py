@@ -8,12 +8,9 @@ import shapely
 from pipeline.sources.threed_front.furniture import Placed
 from pipeline.taxonomy import Taxonomy
 
-ON = 0.03
-"""What starts within this height of another's top stands on it [m]."""
-RAISED = 0.003
-"""What starts no higher than this stands on the floor [m]."""
-LEAST = 0.7
-"""Share of a thing's footprint that must be over its support's."""
+ON = 0.03  # [m] what starts within this height of another's top stands on it
+RAISED = 0.003  # [m] what starts no higher stands on the floor
+LEAST = 0.7  # share of a thing's footprint that must be over its support's
 
 
 def supports(objects: Sequence[Placed], taxonomy: Taxonomy) -> list[int]:
@@ -43,7 +40,7 @@ def supports(objects: Sequence[Placed], taxonomy: Taxonomy) -> list[int]:
     return bearers
 
 
-def floating(piece: Placed, support: int, taxonomy: Taxonomy) -> bool:
+def hangs_in_air(piece: Placed, support: int, taxonomy: Taxonomy) -> bool:
     """Whether a small thing hangs in the air: its support was left out."""
     category = taxonomy.categories[piece.category]
     return not category.layout and category.mount == "floor" and support < 0 and piece.span[0] > ON

@@ -12,8 +12,9 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Opening, OpeningKind
-from pipeline.sources.threed_front.opening_evidence import DOOR_HEIGHT, LEAST, SAME, Floats, OpeningEvidence
+from pipeline.sources.threed_front.opening_evidence import DOOR_HEIGHT, LEAST, SAME, OpeningEvidence
 from pipeline.sources.threed_front.reveals import bays, group_evidence
 
 DOORWAY = 1.2  # [m] floors that meet on no more than this meet under a doorway
@@ -94,7 +95,7 @@ def openings(
     around = bays(panes)
     take(around, odd)
     odd += [pane for pane in panes if not any(bay.reaches(pane.centre) for bay in around)]
-    return [*room_openings, *touching(rooms, height, room_openings, walls)], depths, [*odd, *rest]
+    return [*room_openings, *passages_between(rooms, height, room_openings, walls)], depths, [*odd, *rest]
 
 
 def _in_wall(hole: OpeningEvidence, rooms: Rooms, reach: float) -> OpeningEvidence:
@@ -149,7 +150,7 @@ def _kind(hole: OpeningEvidence, rooms: int) -> OpeningKind:
     return "open" if hole.width > OPEN_WIDTH else "portal"
 
 
-def touching(
+def passages_between(
     rooms: Rooms, height: float, known: Sequence[Opening], walls: Callable[[], shapely.Geometry] = shapely.MultiLineString
 ) -> list[Opening]:
     """Return the opening of each pair of rooms whose floors meet without a wall: `open`, or `portal` on a doorway's width.

@@ -21,15 +21,8 @@ from schemas.table import Table
 
 THIN = 0.05  # [m] what is flatter lies under one's feet
 STANDING = 0.3  # [m] an object whose bottom is lower takes up floor; pendant lamps and wall units do not
-ENTRANCES = (
-    "hallway",
-    "aisle",
-    "corridor",
-    "livingdiningroom",
-    "livingroom",
-    "diningroom",
-    "lounge",
-)  # rooms that one enters, likeliest first
+# rooms that one enters, likeliest first
+ENTRANCES = ("hallway", "aisle", "corridor", "livingdiningroom", "livingroom", "diningroom", "lounge")
 
 
 @dataclass(slots=True)
