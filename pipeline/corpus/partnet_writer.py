@@ -166,7 +166,12 @@ def write_model(model: Model, folder: Path) -> None:
     _write_json(folder / "link_annotation_gapartnet.json", annotation(links, frame))
     low, high = frame.point(shape.bounds()).min(axis=0), frame.point(shape.bounds()).max(axis=0)
     _write_json(folder / "bounding_box.json", {"min": _numbers(low), "max": _numbers(high)})
-    about = {"user_id": "embedded", "model_cat": model.partnet_category, "model_id": name.removeprefix("partnet_")}
+    about = {
+        "user_id": "embedded",
+        "model_cat": model.partnet_category,
+        "category": model.category,
+        "model_id": name.removeprefix("partnet_"),
+    }
     _write_json(folder / "meta.json", about | {"version": "1", "anno_id": model.model_id, "time_in_sec": "0"})
     _write_json(folder / "result.json", [{"id": 0, "name": model.partnet_category.lower(), "children": []}])
 

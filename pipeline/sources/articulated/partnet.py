@@ -57,5 +57,10 @@ def _model_cat(folder: Folder, words: Mapping[str, tuple[str, str]], known: Sequ
     return next((by_name[w] for w in (*by_body, *above) if w in by_name), next((c for c in by_body.values() if c), ""))
 
 
+def stated_category(folder: Folder) -> str:
+    """Return the category of ours that meta.json states beside PartNet's (`category`), "" where nobody has said which it is."""
+    return text_field(read_json(folder, "meta.json", MIB), "category") if folder.has("meta.json") else ""
+
+
 def _plain(name: str) -> str:
     return "".join(c for c in name.lower() if c.isalnum())

@@ -10,10 +10,11 @@ from pipeline import taxonomy
 from pipeline.manifest import sha256
 from pipeline.sources.articulated.assets import assets
 from pipeline.sources.articulated.metric_scale import gather_proportions, read_extent
-from pipeline.sources.articulated.partnet import URDFS, read_shape
+from pipeline.sources.articulated.partnet import URDFS, read_shape, stated_category
 from pipeline.sources.articulated.plain_urdf import candidates, orient_shape, read_plain_urdf
 from pipeline.sources.batch import Batch
 from pipeline.sources.guarded import Folder
+from pipeline.sources.reasons import SourceError
 from pipeline.sources.rows import LibraryRows, Scale
 from pipeline.sources.settings import PreprocessSettings
 from pipeline.sources.source import Listing, Reading, Source, Task, require_folders
@@ -110,7 +111,11 @@ def read_object(task: Task, entry: ObjectEntry) -> LibraryRows:
     else:
         models = sorted({name for kind in kinds.categories.values() for name in kind.names.partnet})
         shape = read_shape(root.sub(entry.path), entry.source_id, limits.max_texture, models)
-        categories = kinds.from_partnet(shape.model_cat) or ((shape.model_cat,) if shape.model_cat in kinds.categories else ())
+        stated = stated_category(root.sub(entry.path))
+        if stated and stated not in kinds.categories:
+            raise SourceError("unknown_category", entry.source_id, f"category {stated!r} in meta.json")
+        categories = (stated,) if stated else kinds.from_partnet(shape.model_cat)
+        categories = categories or ((shape.model_cat,) if shape.model_cat in kinds.categories else ())
     own = task.known.get(shape.model_cat)
     for asset, fit, rejects in assets(shape, entry.stem, categories, kinds, limits, task.reading.licence, own):
         rows.keep(task.reading.assets, asset, Scale(fit.scale, fit.category if fit.fitted else "file", fit.rms))
