@@ -193,7 +193,9 @@ def _answer(messages: list[dict[str, str]], server: Server, deadline: float) -> 
     """Return the text of one reply: patient with a busy server, and with one that knows fewer or other parameters."""
     usual: dict[str, Any] = {"max_tokens": MOST_TOKENS, "temperature": 0, "seed": 0}
     strict = {"type": "json_schema", "json_schema": {"name": "FloorProgram", "schema": schema()}}
-    variants: list[dict[str, Any]] = [usual | {"response_format": strict}, usual | {"response_format": {"type": "json_object"}}, {}]
+    loose = {"type": "json_object"}
+    formats = (strict, loose | {"schema": schema()}, loose)  # the second is how llama-cpp-python's server wants a schema
+    variants: list[dict[str, Any]] = [*(usual | {"response_format": each} for each in formats), {}]
     pauses = list(PAUSES)
     while True:
         body = {"model": server.model, "messages": messages, **variants[0]}
@@ -202,10 +204,14 @@ def _answer(messages: list[dict[str, str]], server: Server, deadline: float) -> 
             content = json.loads(raw)["choices"][0]["message"]["content"]
             break
         except urllib.error.HTTPError as error:
-            known = _known(variants, " ".join(getattr(error, "__notes__", ())))
-            if error.code in UNSUPPORTED and known != variants:
+            complaint = " ".join(getattr(error, "__notes__", ()))
+            known = _known(variants, complaint)
+            unsupported = (
+                error.code in UNSUPPORTED or "response_format" in complaint
+            )  # of which some servers complain as of a fault of theirs
+            if unsupported and known != variants:
                 variants = known
-            elif error.code in UNSUPPORTED and len(variants) > 1:
+            elif unsupported and len(variants) > 1:
                 del variants[0]
             elif error.code in BUSY and pauses:
                 time.sleep(max(0.0, min(pauses.pop(0), deadline - time.monotonic())))

@@ -21,7 +21,7 @@ from pipeline.floorplan.prompt import request
 
 PROMPT = "a flat with two bedrooms, a kitchen and a bathroom"
 CONTEXT = 8192  # tokens: all that the model has been trained for
-PATIENCE = 120.0  # s
+PATIENCE = 300.0  # s
 
 
 @pytest.fixture(scope="module")
