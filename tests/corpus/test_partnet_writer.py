@@ -248,7 +248,7 @@ def test_the_reader_finds_the_same_joints_and_colliders(tmp_path):
 def test_meta_values_are_strings(folders):
     for model, folder in folders:
         meta = json.loads((folder / "meta.json").read_text())
-        assert set(meta) == {"user_id", "model_cat", "model_id", "version", "anno_id", "time_in_sec"}
+        assert set(meta) == {"user_id", "model_cat", "category", "model_id", "version", "anno_id", "time_in_sec"}
         assert all(isinstance(v, str) for v in meta.values())
         assert meta["anno_id"] == model.model_id
         assert len(meta["model_id"]) == 32

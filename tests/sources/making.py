@@ -212,8 +212,8 @@ def corner_obj(low, high):
     return box_obj(size, at=((low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2), mtl="original-0.mtl", uv=False)
 
 
-def write_partnet(root, name="40000", *, model_cat="StorageFurniture", gapartnet=True, joints=None, urdf=None, parts=None):
-    """An object's folder. `joints` replaces the XML of the two joints, `urdf` the whole file."""
+def write_partnet(root, name="40000", *, model_cat="StorageFurniture", gapartnet=True, joints=None, urdf=None, parts=None, **meta):
+    """An object's folder, `meta` in its meta.json. `joints` replaces the XML of the two joints, `urdf` the whole file."""
     folder = Path(root) / name
     meshes = folder / "textured_objs"
     meshes.mkdir(parents=True, exist_ok=True)
@@ -231,7 +231,7 @@ def write_partnet(root, name="40000", *, model_cat="StorageFurniture", gapartnet
     hinge = (-W / 2, 0.0, D / 2)
     xml = urdf or partnet_urdf(hinge, joints)
     (folder / ("mobility_annotation_gapartnet.urdf" if gapartnet else "mobility.urdf")).write_text(xml)
-    (folder / "meta.json").write_text(json.dumps({"model_cat": model_cat, "anno_id": name, "user_id": "1"}))
+    (folder / "meta.json").write_text(json.dumps({"model_cat": model_cat, "anno_id": name, "user_id": "1", **meta}))
     (folder / "semantics.txt").write_text("link_0 hinge door\nlink_1 slider drawer\nlink_2 heavy furniture_body\n")
     if gapartnet:
         entries = [("link_0", "hinge_door"), ("link_1", "slider_drawer"), ("link_3", "line_fixed_handle"), ("link_2", "")]

@@ -399,3 +399,19 @@ def test_without_its_meshes_an_object_is_left_out(tmp_path):
     made = read(tmp_path)
     assert made.assets == []
     assert [r["reason"] for r in made.rejects] == ["no_base"]
+
+
+def test_a_stated_category_goes_before_what_proportions_tell(tmp_path):
+    guessed, _ = first(tmp_path / "guessed")
+    asset, tables = first(tmp_path / "stated", category="wardrobe")
+    assert guessed.category != "wardrobe"
+    assert asset.category == "wardrobe"
+    assert {row["category"] for row in tables.assets} == {"wardrobe"}
+    assert 1.6 < asset.size[2] < 2.8, "as tall as wardrobes are"
+
+
+def test_a_stated_category_that_nobody_knows_is_refused(tmp_path):
+    making.write_partnet(tmp_path / "partnet", category="throne")
+    tables = read(tmp_path)
+    assert tables.assets == []
+    assert [(row["reason"], row["detail"]) for row in tables.rejects] == [("unknown_category", "40000: category 'throne' in meta.json")]
