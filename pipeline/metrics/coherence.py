@@ -18,7 +18,7 @@ def coherence(
 ) -> dict[str, Mean]:
     """Return figures of the homes whose objects these are; `styles` and `finishes` (3,) CIELAB by asset, of those that have one.
 
-    "things": of all kinds, a home. "style": share of a home's things that are of its commonest style. "one model of ...": share of
+    "things": of all kinds, a home. "style": share of a home's furniture (what the layout model places) that is of its commonest style. "one model of ...": share of
     the rooms with several chairs, nightstands and other things that come in sets (`set` on their cards) in which all are one model.
     "finish of ...": share of a room's things of a group (`finish` on their cards) that look like one another, for the largest such part.
     """
@@ -27,7 +27,7 @@ def coherence(
     for (scene_id, _), rows in rooms.items():
         homes.setdefault(scene_id, []).extend(rows)
     figures: dict[str, list[float]] = {"things": [len(rows) for rows in homes.values()]}
-    styled = [[styles[row["asset_id"]] for row in rows if row["asset_id"] in styles] for rows in homes.values()]
+    styled = [[styles[row["asset_id"]] for row in rows if _is_furniture(row) and row["asset_id"] in styles] for rows in homes.values()]
     figures["style"] = [Counter(own).most_common(1)[0][1] / len(own) for own in styled if len(own) > 1]
     for category in (card.name for card in cards().values() if card.set):
         models = [[row["asset_id"] for row in rows if row["category"] == category] for rows in rooms.values()]
@@ -38,6 +38,10 @@ def coherence(
         ]
         figures[f"finish of {group}"] = [_alike(own) for own in colours if len(own) > 1]
     return {name: bootstrap(rng, values) for name, values in figures.items() if values}
+
+
+def _is_furniture(row: Row) -> bool:
+    return row["category"] in cards() and cards()[row["category"]].layout
 
 
 def _is_of(row: Row, group: str) -> bool:

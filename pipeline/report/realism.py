@@ -32,7 +32,7 @@ def realism_section(table: Json, coherence: Json, pictures: Sequence[Picture]) -
         _rates("The strongest learnt relations: share of cases that stand in one of their modes", relations["learnt"]),
         _rates("Objects in a room; chairs in rooms with a dining table", {**relations["objects"], "chairs": relations["chairs"]}),
         _rates(
-            "Whether things go together (a home's things in its commonest style, sets of one model, finishes that look alike), and how many a home has",
+            "Whether things go together (a home's furniture in its commonest style, sets of one model, finishes that look alike), and how many a home has",
             coherence,
         ),
         _forest(table["layout"]),
