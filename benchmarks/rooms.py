@@ -65,10 +65,13 @@ class Unasked(Sampler):
         return Sampler.inventories(self, free, keys, floors)
 
 
-def arrangements(jobs: Sequence[RoomJob], made: Furniture) -> list[Arrangement]:
-    """Return furnished rooms as the metrics read them."""
+def arrangements(floors: Sequence[Arrangement], jobs: Sequence[RoomJob], made: Furniture) -> list[Arrangement]:
+    """Return furnished rooms as the metrics read them, with the doors and windows of the floors that they stand on."""
     things = [[(p.category, p.position, p.yaw, p.size) for p in own] for own in made]
-    return [furniture(make_arrangement(str(j.index), j.layout_type, j.room.polygon, own)) for j, own in zip(jobs, things, strict=True)]
+    return [
+        furniture(make_arrangement(str(j.index), j.layout_type, j.room.polygon, own, floor.openings))
+        for floor, j, own in zip(floors, jobs, things, strict=True)
+    ]
 
 
 def furnish_rooms(factory: Factory, jobs: Sequence[RoomJob], seconds: dict[str, float]) -> dict[str, Furniture]:
@@ -127,8 +130,7 @@ def views_apart(
     sets = {"train": floors}
     as_real = {"train, finished": finished(factory, drafts_of_real(factory, own, [examples[room.name] for room in floors]))}
     for name, made in {**as_real, **furnish_rooms(factory, own, defaultdict(float))}.items():
-        rooms = zip(arrangements(own, made), floors, strict=True)
-        sets[name] = [replace(room, openings=floor.openings) for room, floor in rooms if room.categories]
+        sets[name] = [room for room in arrangements(floors, own, made) if room.categories]
     rng, classes, truly = np.random.default_rng(factory.seed), taxonomy.load().names, classes_of(real)
     figures = compare_views(rng, factory.seed, features_of, real, sets)
     return {name: own | {"ckl": ckl(truly, classes_of(sets[name]), classes)["real_to_generated"]} for name, own in figures.items()}
@@ -227,7 +229,7 @@ def main(count: int, seeds: int) -> None:
     truth = [replace(room, name=str(named[room.name].index)) for room in spread(real, count or len(real))]
     chosen = [room.name for room in spread(real, count or len(real))]
     jobs, names = [named[name] for name in chosen], [room.name for room in truth]
-    sets = {"real": truth * seeds}
+    sets = {"real": truth * seeds, "train": train}
     accuracies: dict[str, list[float]] = defaultdict(list)
     views: dict[str, list[Any]] = defaultdict(list)
     seconds: dict[str, float] = defaultdict(float)
@@ -241,7 +243,7 @@ def main(count: int, seeds: int) -> None:
         as_real = [draft.placements for draft in drafts_of_real(factory, jobs, [examples[name] for name in chosen])]
         ways = {name: obstructed(factory, jobs, own) for name, own in {"real": as_real, **every}.items()}
         for name, made in every.items():
-            rooms = arrangements(jobs, made)
+            rooms = arrangements(truth, jobs, made)
             sets.setdefault(name, []).extend(rooms)
             accuracies[name].append(forest_accuracy(seed, features(truth), features(rooms), names, names)["rate"])
     comparison = compare(np.random.default_rng(0), sets, Relations.load(folder / "relations.json"))
