@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.card import cards
 from pipeline.errors import ContentError
 from pipeline.retrieval.settings import RetrievalSettings
 
@@ -209,7 +210,9 @@ class AssetIndex:
 
     def fit(self, row: int, distance: float, asked: NDArray[np.float64]) -> Match:
         """Return the asset of a row as what was `asked` for (3,) [m] gets it: static ones are stretched a little."""
-        limit = 0.0 if self.articulated[row] else self.settings.stretch
+        limit = np.full(3, 0.0 if self.articulated[row] else self.settings.stretch)
+        if self.categories[row] in cards() and cards()[self.categories[row]].finish == "kitchen":
+            limit[2] = 0.0  # one works at one height along a run
         scale = np.clip(np.asarray(asked, float) / self.sizes[row], 1 - limit, 1 + limit)
         return Match(self.asset_ids[row], distance, scale, self.sizes[row] * scale, bool(self.openable[row]))
 

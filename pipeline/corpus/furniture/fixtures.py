@@ -123,7 +123,7 @@ def _sink_into_top(shape: Shape, hole_x: Interval, hole_y: Interval, basin: Piec
 
 def sink_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a base unit whose counter holds a bowl and a tap, over doors or a deep drawer."""
-    body = min(WORKTOP, h - 0.2)  # the tap stands above the counter
+    body = min(WORKTOP, h - 0.1)  # the tap stands above the counter
     how = unit_style(series_rng(finishes.style_name), finishes)
     cells: tuple[Cell, ...] = (Cell("pair" if w > 0.56 else "left", 1.0, 0),)
     if form == "drawer":  # the bowl leaves no room for a drawer above

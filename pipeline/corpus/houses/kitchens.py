@@ -9,6 +9,7 @@ SEAM = 0.002
 SMALL = 7.0  # kitchens of less floor have no other wall for a refrigerator [m2]
 NEEDED = frozenset({"sink_cabinet", "oven", "refrigerator", "kitchen_cabinet"})
 """Nobody cooks without one of each: their least widths are kept free until they stand."""
+TAP = 0.16  # how far a tap rises above its worktop, at most [m]
 HUNG_AT = 1.45  # underside of the wall units [m]
 
 
@@ -54,7 +55,8 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
             continue
         s = a + at + model.size[0] / 2 if forward else b - at - model.size[0] / 2
         spot = on_side(space, i, s, model.size[1], 0.004)
-        if not space.try_add(model, spot, clearances=[ahead(spot, model.size[1], free_front(category, 0.65), model.size[0])]):
+        front = ahead(spot, model.size[1], free_front(category, 0.65), model.size[0])
+        if not space.try_add(model, spot, clearances=[front], slender=TAP if category == "sink_cabinet" else 0.0):
             left.append(category)
             continue
         placed.append((model, s))

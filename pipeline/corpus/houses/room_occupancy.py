@@ -142,10 +142,10 @@ class Space:
             self.swept.append(self.clearances[-1])
         self.doors.append(side.point((low + high) / 2, 0.36))
 
-    def fits(self, box: Rect, low: float, high: float, under: Rect | None = None) -> bool:
+    def fits(self, box: Rect, low: float, high: float, under: Rect | None = None, slender: float = 0.0) -> bool:
         """Whether a box is inside the room and clear of everything that stands or must stay free.
 
-        `under` is the rectangle of a table that the box may reach below.
+        `under` is the rectangle of a table that the box may reach below; its top is so `slender` [m] that it takes no light from a window.
         """
         if any(meets(box, r) and low < z1 - EPSILON and z0 < high - EPSILON and r is not under for r, z0, z1 in self.solids):
             return False
@@ -155,7 +155,7 @@ class Space:
             return False
         if any(low < top and meets(box, r) for r, top in self.gaps):  # nothing hangs in a doorway
             return False
-        return self.blind or not any(high > sill + 0.05 and meets(box, r) for r, sill in self.panes)
+        return self.blind or not any(high - slender > sill + 0.05 and meets(box, r) for r, sill in self.panes)
 
     def clear(self, box: Rect, margin: float = 0.0) -> bool:
         """Whether nothing stands on the floor of a rectangle."""
@@ -190,9 +190,11 @@ class Space:
         self.clearances.extend(clearances)
         return item
 
-    def try_add(self, model: Model, spot: Spot, z: float = 0.0, *, clearances: Sequence[Rect] = (), under: Rect | None = None) -> bool:
-        """Put a piece down if it fits there and its free rectangles are free; a chair may reach under its table."""
-        if not self.fits(spot.box(*model.size[:2]), z, z + model.size[2], under) or not all(self.clear(r) for r in clearances):
+    def try_add(
+        self, model: Model, spot: Spot, z: float = 0.0, *, clearances: Sequence[Rect] = (), under: Rect | None = None, slender: float = 0.0
+    ) -> bool:
+        """Put a piece down if it fits there (see `fits`) and its free rectangles are free; a chair may reach under its table."""
+        if not self.fits(spot.box(*model.size[:2]), z, z + model.size[2], under, slender) or not all(self.clear(r) for r in clearances):
             return False
         self.add(model, spot, z, clearances=clearances)
         return True

@@ -5,7 +5,6 @@ replies may be anything.
 """
 
 import importlib.util
-import logging
 import re
 import socket
 import subprocess
@@ -16,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.floorplan.language.llm import Server, UnansweredError, ask, validate_reply
+from pipeline.floorplan.language.llm import Server, UnansweredError, ask
 from pipeline.floorplan.prompt import request
 
 PROMPT = "a flat with two bedrooms, a kitchen and a bathroom"
@@ -62,13 +61,9 @@ def test_a_real_server_answers_with_a_program_or_is_told_to_be_of_no_use(server)
     if program is None:
         assert re.match("no valid program after|no answer in time", complaint)
     else:
-        assert program.rooms
-        assert validate_reply(program.model_dump_json(exclude_defaults=True), PROMPT)
+        quoted = {e.field.split(".")[1] for e in program.evidence if e.field.startswith("rooms.")}
+        assert {room.id for room in program.rooms if room.stated} <= quoted, "what no words say counts as a default"
 
 
-def test_a_home_comes_of_it_all_the_same(server, caplog):
-    with caplog.at_level(logging.WARNING):
-        program = request(PROMPT, server)
-    assert program.rooms
-    if {e.source for e in program.evidence} != {"llm"}:
-        assert caplog.messages, "what the model did not read is said"
+def test_a_home_comes_of_it_all_the_same(server):
+    assert {room.type for room in request(PROMPT, server).rooms}
