@@ -77,8 +77,8 @@ def drafts(factory: Factory, made: Made, jobs: Mapping[str, RoomJob], truth: Seq
             context = RoomContext.of(job.plan, job.room_id, job.layout_type)
             things = proposals_of(made.rows[which].astype(float), [known.names[k] for k in made.classes[which]], context)
             placed.append(retrieve(job, context, things, factory.index, known, factory.seed).placements)
-        rooms = zip(arrangements(own, placed), truth, strict=True)
-        seeds.append([replace(room, name=floor.name, openings=floor.openings) for room, floor in rooms if room.categories])
+        rooms = zip(arrangements(truth, own, placed), truth, strict=True)
+        seeds.append([replace(room, name=floor.name) for room, floor in rooms if room.categories])
     return seeds
 
 
