@@ -10,7 +10,6 @@ from pipeline.card import cards
 from pipeline.retrieval.index import AssetIndex, Match
 
 Floats = NDArray[np.float64]
-FRONTS = 3.0  # so much more than others' do the finishes of kitchen units count: all of a kitchen have one front
 STEP, MOST_STEPS = 30.0, 2.0  # how far off a finish has to be to count once [CIELAB]; it counts so many times at most
 
 # Groups of categories whose finishes go together in a room (`finish` of their cards), and those from which the room's is drawn, the first that the library has.
@@ -86,14 +85,12 @@ def tasteful(
             matches.append(None)
             continue
         far = favoured.distance(shelf, asked[k : k + 1], shapes[k : k + 1])[0]
-        kind = cards()[category].finish if category in cards() else ""
-        best = np.argsort(far, kind="stable")[: s.shortlist * (2 if kind == KITCHEN else 1)]
-        finish = taste.finishes.get(kind)
+        best = np.argsort(far, kind="stable")[: s.shortlist]
+        finish = taste.finishes.get(cards()[category].finish if category in cards() else "")
         off = np.zeros(len(best))
         if finish is not None:
             off = np.linalg.norm(index.finishes[shelf[best]] - finish, axis=1)
-        weight = s.prefer_finish * (FRONTS if kind == KITCHEN else 1.0)
-        cost = far[best] + weight * np.minimum(np.nan_to_num(off) / STEP, MOST_STEPS)
+        cost = far[best] + s.prefer_finish * np.minimum(np.nan_to_num(off) / STEP, MOST_STEPS)
         j = int(best[cost.argmin()])
         matches.append(index.fit(int(shelf[j]), float(far[j]), asked[k]))
     return matches
