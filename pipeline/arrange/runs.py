@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrange.candidates import hides
 from pipeline.arrange.item import Item, yaw_difference
 from pipeline.arrange.site import Site
 from pipeline.arrange.walls import Edge
@@ -55,11 +56,11 @@ def stray_units(runs: Sequence[Sequence[int]], items: Sequence[Item], poses: Flo
     return [i for i in units if i not in alone and not any(k != i and _beside(items, poses, i, k) for k in units)]
 
 
-def bare_units(items: Sequence[Item], poses: Floats, there: NDArray[np.bool_]) -> list[int]:
-    """Return the wall units that stand at `poses` (N, 4), and over no base unit."""
+def bare_units(items: Sequence[Item], poses: Floats, there: NDArray[np.bool_], site: Site) -> list[int]:
+    """Return the wall units that hang at `poses` (N, 4), and over no base unit or before a window."""
     hung = [i for i, item in enumerate(items) if there[i] and item.habit.kind == "kitchen" and item.mount == "wall"]
     base = [i for i in base_units(items) if there[i]]
-    return [i for i in hung if not any(_over(items, poses, i, k) for k in base)]
+    return [i for i in hung if hides(items[i], poses[i], site) or not any(_over(items, poses, i, k) for k in base)]
 
 
 def base_units(items: Sequence[Item]) -> list[int]:
@@ -148,7 +149,8 @@ class _Kitchen:
             if not own or not base:
                 continue
             bottom = float(np.median([items[i].wished[2] for i in own])) - site.elevation
-            top = max((float(items[i].placement.size[2]) for i in base if not self._tall(i)), default=0.9)
+            worktops = [i for i in base if not self._tall(i) and items[i].placement.category != SINK]  # a tap is no worktop
+            top = max((float(items[i].placement.size[2]) for i in worktops), default=0.9)
             highest = site.ceiling - site.elevation - max(float(items[i].placement.size[2]) for i in own) - 0.02
             bottom = min(bottom if abs(bottom - HUNG_AT) < 0.1 else HUNG_AT, highest)
             if bottom < top + LEAST_AIR:

@@ -82,7 +82,7 @@ def separate(
         there = {i: items[i].at(occupancy.poses[i]) for i in np.flatnonzero(occupancy.there).tolist()}
         lost = [i for i in range(len(items)) if i not in there]
         strays = stray_units(runs, items, occupancy.poses, occupancy.there)
-        bare = bare_units(items, occupancy.poses, occupancy.there)
+        bare = bare_units(items, occupancy.poses, occupancy.there, site)
         faults = BROKEN * _weight(items, (*apart, *strays)) + _weight(items, bare) + _useless(items, bonds, occupancy.unreached)
         score = _score(there, items, faults)
         if (sound or number == settings.rounds - 1) and (least is None or score < least):

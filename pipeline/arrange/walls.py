@@ -83,8 +83,9 @@ def _opening_in(edge: Edge, opening: Opening) -> EdgeOpening | None:
 
 
 def hides_window(item: Item, opening: EdgeOpening) -> bool:
-    """Whether an object is too high to stand before a window."""
-    return opening.window and item.mount == "floor" and float(item.placement.size[2]) > opening.sill + ABOVE_SILL
+    """Whether an object is too high to stand before a window, or hangs on a wall."""
+    high = item.mount == "floor" and float(item.placement.size[2]) > opening.sill + ABOVE_SILL
+    return opening.window and (high or item.mount == "wall")
 
 
 def opening_cost(item: Item, s: Floats, openings: Sequence[EdgeOpening]) -> Floats:

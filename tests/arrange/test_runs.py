@@ -174,4 +174,4 @@ def test_a_wall_unit_that_finds_no_place_over_the_base_is_left_out():
 def test_a_wall_unit_is_bare_where_no_base_unit_is_under_it():
     items = [make_item(drafted(ASSETS["hung"], x, 2.8, z=1.45, number=k), ASSETS, LORE, 0.5) for k, x in enumerate((1.0, 3.0))]
     items.append(make_item(drafted(ASSETS["base"], 1.1, 2.7, number=2), ASSETS, LORE, 0.5))
-    assert bare_units(items, np.array([i.wished for i in items]), np.ones(3, bool)) == [1]
+    assert bare_units(items, np.array([i.wished for i in items]), np.ones(3, bool), site(narrow(), "room")) == [1]
