@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from pipeline.arrange import separate
 from pipeline.arrange.item import make_item
 from pipeline.arrange.runs import bare_units, stray_units
+from pipeline.entities.plan import Opening, Plan
 from pipeline.verify import verify_home
 from tests.arrange.known import LORE, drafted
 from tests.geometry.furniture import block, cupboard, home, one_room
@@ -175,3 +176,15 @@ def test_a_wall_unit_is_bare_where_no_base_unit_is_under_it():
     items = [make_item(drafted(ASSETS["hung"], x, 2.8, z=1.45, number=k), ASSETS, LORE, 0.5) for k, x in enumerate((1.0, 3.0))]
     items.append(make_item(drafted(ASSETS["base"], 1.1, 2.7, number=2), ASSETS, LORE, 0.5))
     assert bare_units(items, np.array([i.wished for i in items]), np.ones(3, bool), site(narrow(), "room")) == [1]
+
+
+def test_no_wall_unit_hangs_before_a_window():
+    bare = narrow()
+    glass = Opening("pane", "window", ("room",), np.array([[0.4, 3.12], [1.6, 3.12]]), 1.3, 0.9)
+    seen = site(Plan(bare.rooms, (*bare.openings, glass), "room"), "room")
+    wished = [drafted(ASSETS[name], 0.45 + 0.8 * k, 2.65, number=k) for k, name in enumerate(("sink", "base"))]
+    wished += [drafted(ASSETS["hung"], x, 2.8, z=1.45, number=2 + k) for k, x in enumerate((0.6, 2.0))]
+    items = [make_item(p, ASSETS, LORE, 0.5) for p in wished]
+    assert 2 in bare_units(items, np.array([i.wished for i in items]), np.ones(4, bool), seen)
+    hung = [p for p in separate(seen, wished, ASSETS, LORE).placements if p.asset_id == "hung"]
+    assert all(p.yaw != 0.0 or p.position[0] - p.size[0] / 2 > 1.55 for p in hung), "at another wall, beside the window, or left out"
