@@ -51,14 +51,10 @@ def main(dataset: Path, draws: int) -> None:
     sets = {"real": real, "train": train, "shipped": shipped}
     print_rates(compare(np.random.default_rng(0), sets, Relations.load(tables / "relations.json")))
     print("whether things go together, and how many a home has: real, shipped")
-    held_out = [row for row in read(tables / "objects.parquet", OBJECTS) if row["scene_id"] in homes_of_split(tables)]
+    split = {row["scene_id"] for row in read(tables / "scenes.parquet", SCENES) if row["split"] == "test"}
+    held_out = [row for row in read(tables / "objects.parquet", OBJECTS) if row["scene_id"] in split]
     for name, of in dataset_coherence(ROOT, np.random.default_rng(0), held_out, dataset).items():
         print(f"  {name:30s} " + "   ".join(f"{v['mean']:7.3f} ({v['low']:.2f}-{v['high']:.2f}) of {v['n']}" for v in of.values()))
-
-
-def homes_of_split(folder: Path) -> set[str]:
-    """Return the scene_ids of the test split."""
-    return {row["scene_id"] for row in read(folder / "scenes.parquet", SCENES) if row["split"] == "test"}
 
 
 if __name__ == "__main__":
