@@ -69,11 +69,11 @@ class Arranger:
             yield model
             width = model.size[0] * by
 
-    def at_wall(self, category: str, *, corner: float = 0.6, tries: int = 3) -> bool:
+    def at_wall(self, category: str, *, corner: float = 0.6, aside: float = 0.004, tries: int = 3) -> bool:
         """Put a piece of the category with its back to a wall, its front free; smaller models after a failure."""
         front = free_front(category, 0.35)
         for model in self.smaller(category, tries, 0.95):
-            spot = against(self.rng, self.space, model, front=front, corner=corner)
+            spot = against(self.rng, self.space, model, front=front, corner=corner, aside=aside)
             if spot is not None and self.space.try_add(model, spot, clearances=[ahead(spot, model.size[1], front, model.size[0])]):
                 return True
         return False

@@ -1,11 +1,14 @@
 """Kitchens: a run of base units along a wall, appliances in it, the fridge at its end, wall units above."""
 
+import itertools
+
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger, free_front
 from pipeline.corpus.houses.room_occupancy import ahead, on_side
 
 FRONT = 0.75  # free floor before a run: an open door and a cook [m]
 SEAM = 0.002
+FILLER = 0.035  # between a run and the wall that it ends at: a door that stands open needs it for its handle [m]
 SMALL = 7.0  # kitchens of less floor have no other wall for a refrigerator [m2]
 NEEDED = frozenset({"sink_cabinet", "oven", "refrigerator", "kitchen_cabinet"})
 """Nobody cooks without one of each: their least widths are kept free until they stand."""
@@ -19,15 +22,17 @@ def furnish_kitchen(arranger: Arranger) -> None:
     middle += ["dishwasher"] if arranger.wants("dishwasher") else []
     middle += ["kitchen_cabinet"] if arranger.wants("second_cabinet") else []
     arranger.rng.shuffle(middle)
-    wanted = [*middle[:1], "sink_cabinet", *middle[1:], "kitchen_cabinet", "kitchen_cabinet", "kitchen_cabinet"]
+    # One thing stands between sink and cooker, where one puts down what one cuts.
+    middle.insert({0: 2, 1: 0}.get(middle.index("oven"), 1), "sink_cabinet")
+    wanted = [*middle, "kitchen_cabinet", "kitchen_cabinet", "kitchen_cabinet"]
     if arranger.wants("fridge_in_run") or arranger.space.area < SMALL:
         wanted = ["refrigerator", *wanted]
     left = run(arranger, wanted)
     if any(c != "kitchen_cabinet" for c in left):
-        appliances = [c for c in left if c not in {"refrigerator", "kitchen_cabinet"}]
-        run(arranger, ["kitchen_cabinet", *appliances, "kitchen_cabinet", "kitchen_cabinet"])
+        others = [c for c in left if c not in {"refrigerator", "kitchen_cabinet"}]
+        run(arranger, ["kitchen_cabinet", *itertools.chain.from_iterable((c, "kitchen_cabinet") for c in others)])
     if not any(i.model.category == "refrigerator" for i in arranger.space.items):
-        arranger.at_wall("refrigerator", corner=0.95)
+        arranger.at_wall("refrigerator", corner=0.95, aside=FILLER)
 
 
 def run(arranger: Arranger, wanted: list[str]) -> list[str]:
@@ -43,7 +48,9 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
     length, i, a, b = good[int(rng.integers(len(good)))]
     low_corner, high_corner = a < 0.05, b > space.sides[i].length - 0.05
     forward = low_corner if low_corner != high_corner else arranger.chance(0.5)
-    at = 0.005
+    near, far = (low_corner, high_corner) if forward else (high_corner, low_corner)
+    at = FILLER if near else 0.005
+    length -= FILLER if far else 0.0
     left: list[str] = []
     placed: list[tuple[Model, float]] = []
     for number, category in enumerate(wanted):

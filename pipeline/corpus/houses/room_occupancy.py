@@ -214,8 +214,10 @@ class Space:
         return fits
 
 
-def against(rng: np.random.Generator, space: Space, model: Model, *, front: float, corner: float = 0.5, low: float = 0.0) -> Spot | None:
-    """Return a place with the back to a wall, `front` metres free before it; with chance `corner` at a stretch's end."""
+def against(
+    rng: np.random.Generator, space: Space, model: Model, *, front: float, corner: float = 0.5, aside: float = 0.004, low: float = 0.0
+) -> Spot | None:
+    """Return a place with the back to a wall, `front` metres free before it; with chance `corner` at a stretch's end, `aside` off it [m]."""
     w, d, h = model.size
     gap = back_gap(rng)
     candidates: list[tuple[int, float, float]] = []
@@ -229,7 +231,8 @@ def against(rng: np.random.Generator, space: Space, model: Model, *, front: floa
     slack = b - a - w
     if rng.random() < corner:
         if corner >= 0.95 and (a < 0.01) != (b > space.sides[i].length - 0.01):
-            near = a + w / 2 + 0.004 if a < 0.01 else b - w / 2 - 0.004
+            into = min(slack, aside)
+            near = a + w / 2 + into if a < 0.01 else b - w / 2 - into
             return on_side(space, i, near, d, gap)
         into = min(slack, abs(float(rng.normal(0.0, 0.02))) + 0.005)
         s = a + w / 2 + into if rng.random() < 0.5 else b - w / 2 - into
