@@ -121,14 +121,13 @@ def outside(prisms: Prisms, rooms: RoomBatch, owner: Tensor) -> Tensor:
     return torch.zeros_like(prisms.low).index_add(0, thing, squared / 2)
 
 
-def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch, slack: float = 0.0) -> Tensor:
+def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch) -> Tensor:
     """Return phi_articoll (B,) of B rooms [m2]: how deep bodies and what their joints sweep reach into each other.
 
     Paper eq. articoll sums IoU(b'_i, b_j) over ordered pairs, b' the extended state. Here b' is the body and, per joint,
     the box that it really sweeps (`sweeps` (B, N, K, 2, 3), None for bodies alone); in place of the IoU stands half the
     square of the depth (see `overlap`), whose descent is the depth itself, along the shortest way out. Doorways are
-    obstacles too, and so is what lies outside the room. `occupied` (B, N) selects slots. What reaches less deep than `slack`
-    [m] into another costs nothing: units of a real kitchen do, and so do chairs at a table.
+    obstacles too, and so is what lies outside the room. `occupied` (B, N) selects slots.
 
     Most slots are empty and most things open nothing: the pairs that are there are listed, and only these are computed.
     """
@@ -156,7 +155,7 @@ def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None,
     a, b = _from_rows(listed.detach()[left]), _from_rows(listed.detach()[right])
     reach = (a.half**2).sum(-1).sqrt() + (b.half**2).sum(-1).sqrt()
     meet = torch.nonzero(((b.centre - a.centre) ** 2).sum(-1) < reach**2)[:, 0]
-    depth = (overlap(_from_rows(listed[left[meet]]), _from_rows(listed[right[meet]])) - slack).clamp_min(0)
+    depth = overlap(_from_rows(listed[left[meet]]), _from_rows(listed[right[meet]]))
     phi = torch.zeros_like(body.low[:, 0]).index_add(0, owner[meet], depth**2 / 2)
     standing = torch.nonzero(occupied.flatten())[:, 0]
     phi = phi.index_add(0, standing // slots, outside(_from_rows(listed[standing]), rooms, standing // slots) / 2)

@@ -44,7 +44,8 @@ class Guidance:
         if guides:
             if s.articulation == "heuristic":
                 sweeps = heuristic_sweeps(codec.metric(moved[..., : SIZE.stop], self.classes)[..., SIZE], self.opens[self.classes])
-            moved[..., : YAW.stop] += articulation_descent(codec, moved, self.classes, sweeps, self.rooms, s)
+            for _ in range(s.articulation_steps):
+                moved[..., : YAW.stop] += articulation_descent(codec, moved, self.classes, sweeps, self.rooms, s)
         return moved
 
     def _looked_up(self, codec: Codec, x0: Tensor) -> tuple[Tensor, Tensor | None]:
@@ -62,7 +63,7 @@ def articulation_descent(codec: Codec, x0: Tensor, classes: Tensor, sweeps: Tens
     """Return the step (B, N, 8) down phi_articoll: position x, y and yaw move, size and height stay."""
     metric = codec.metric(x0[..., : YAW.stop], classes).detach().requires_grad_()
     with torch.enable_grad():
-        phi = articulated_collision(boxes_of(metric), classes < codec.classes, sweeps, rooms, s.slack)
+        phi = articulated_collision(boxes_of(metric), classes < codec.classes, sweeps, rooms)
         (gradient,) = torch.autograd.grad(phi.sum(), metric)
     step = torch.zeros_like(metric)
     move = -s.articulation_scale * gradient[..., :2]

@@ -44,7 +44,8 @@ def dataset_coherence(root: Path, rng: np.random.Generator, real: Sequence[Row],
     places = ((ASSETS, root / "data/tables/assets.parquet"), (LATENTS, root / "data/latents/latents.parquet"))
     assets, latents = (tables.read(path, table) for table, path in places)
     shipped = shipped_rows(dataset or root / "data" / "shards", OBJECTS)
-    real_figures, made = (coherence(rng, rows, *tastes(assets, latents)) for rows in (real, shipped))
+    own = tastes(assets, latents)
+    real_figures, made = (coherence(rng, rows, *own) for rows in (real, shipped))
     return {name: {"real": value, "shipped": made[name]} for name, value in real_figures.items() if name in made}
 
 

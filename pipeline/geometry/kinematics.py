@@ -96,6 +96,23 @@ def sweep_box(asset: Asset, joint_index: int, steps: int = 9) -> Floats:
     return corners
 
 
+def beyond_body(sweeps: Floats, size: Floats) -> Floats:
+    """Return what swept boxes (J, 2, 3) cover beyond the body's box of `size` (3,) [m, object frame], each past the face that it goes past farthest.
+
+    A door's edge and handle pass beside the body only when they have left its front: the box of the whole way would block its neighbours.
+    """
+    low, high = np.array([-size[0] / 2, -size[1] / 2, 0.0]), np.array([size[0] / 2, size[1] / 2, size[2]])
+    past = np.concatenate([low - sweeps[:, 0], sweeps[:, 1] - high], 1)
+    boxes = sweeps.copy()
+    for box, face in zip(boxes, past.argmax(1) if len(past) else (), strict=True):
+        if face < 3:
+            box[1, face] = low[face]
+        else:
+            box[0, face - 3] = high[face - 3]
+    beyond: Floats = boxes[past.max(1, initial=0.0) > 0.0]
+    return beyond
+
+
 def handle_point(asset: Asset, joint_index: int) -> Floats:
     """Return where a hand takes hold (3,) [m, object frame at rest].
 

@@ -1,7 +1,7 @@
 """Articulation: R_acoll, the share of articulated objects whose extended boxes meet others (paper eq. acoll_metric).
 
 The extended box b' comes in two kinds. `heuristic`: a third of the depth is added ahead, as peers and presumably the
-paper do, whatever the joints are. `joints`: the box around the asset and all that its joints really sweep. Beside them
+paper do, whatever the joints are. `joints`: the asset's box and, per joint, the box of what it sweeps beyond it. Beside them
 stands `swept`: the share of objects with a joint that touches something on its way, as the judge found it with prisms.
 """
 
@@ -10,8 +10,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from pipeline.arrays import Ints
 from pipeline.geometry.boxes import iou_matrix
-from pipeline.geometry.kinematics import OPENERS
+from pipeline.geometry.kinematics import OPENERS, beyond_body
 from pipeline.metrics.intervals import Mean, Rate, bootstrap, rate
 from pipeline.metrics.rows import Boxes, Floats, Row, boxes, by_room
 
@@ -30,33 +31,36 @@ def sweeps_of(asset_joints: Iterable[Row]) -> dict[str, Floats]:
     return {asset: np.array(pairs, float).reshape(-1, 2, 3) for asset, pairs in by_asset.items()}
 
 
-def extended_boxes(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None = None) -> Boxes:
-    """Return the boxes b' of objects: extended where they open, as they are otherwise."""
+def extended_boxes(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None = None) -> tuple[Boxes, Ints]:
+    """Return the boxes that b' of objects is made of, and the object (its place in `objects`) of each; the objects' own boxes come first."""
     position, yaw, size = boxes(objects)
+    parts, owners = [(position, yaw, size)], [*range(len(objects))]
     for i, row in enumerate(objects):
         if not row["openable"]:
             continue
-        w, d, h = size[i]
-        low, high = np.array([-w / 2, -d / 2, 0.0]), np.array([w / 2, d / 2, h])
-        if extension == "heuristic":
-            low[1] -= d / 3
-        elif sweeps is not None and row["asset_id"] in sweeps:
-            own = sweeps[row["asset_id"]] * np.array(row["scale"], float)
-            low, high = np.minimum(low, own[:, 0].min(0)), np.maximum(high, own[:, 1].max(0))
         c, s = np.cos(yaw[i]), np.sin(yaw[i])
-        x, y = (low[:2] + high[:2]) / 2
-        position[i] += np.array([c * x - s * y, s * x + c * y, low[2]])
-        size[i] = high - low
-    return position, yaw, size
+        if extension == "heuristic":
+            ahead = size[i, 1] / 3
+            position[i, :2] += np.array([s, -c]) * ahead / 2
+            size[i, 1] += ahead
+        elif sweeps is not None and row["asset_id"] in sweeps:
+            swept = beyond_body(sweeps[row["asset_id"]] * np.array(row["scale"], float), size[i])
+            low, high = swept[:, 0], swept[:, 1]
+            x, y = (low + high)[:, 0] / 2, (low + high)[:, 1] / 2
+            parts.append((position[i] + np.stack([c * x - s * y, s * x + c * y, low[:, 2]], 1), np.full(len(swept), yaw[i]), high - low))
+            owners += [i] * len(swept)
+    position, yaw, size = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return (position, yaw, size), np.array(owners, np.int64)
 
 
 def are_obstructed(objects: Sequence[Row], extension: Extension, sweeps: Sweeps | None = None) -> list[bool]:
     """Tell of each openable object of a room whether its b' meets any other's b'."""
     if not objects:
         return []
-    iou = iou_matrix(*extended_boxes(objects, extension, sweeps))
-    np.fill_diagonal(iou, 0.0)
-    return [bool(iou[i].max() > EPSILON) for i, row in enumerate(objects) if row["openable"]]
+    parts, owners = extended_boxes(objects, extension, sweeps)
+    meet = (iou_matrix(*parts) > EPSILON) & (owners[:, None] != owners)
+    hit = np.bincount(owners, weights=meet.any(1)) > 0
+    return [bool(hit[i]) for i, row in enumerate(objects) if row["openable"]]
 
 
 def acoll(rng: np.random.Generator, objects: Iterable[Row], extension: Extension, sweeps: Sweeps | None = None) -> dict[str, Mean | Rate]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pipeline.card import cards
 from pipeline.errors import ContentError
+from pipeline.geometry.kinematics import beyond_body
 from pipeline.retrieval.settings import RetrievalSettings
 
 Row = Mapping[str, Any]
@@ -97,7 +98,8 @@ class AssetIndex:
             swept.setdefault(joint["asset_id"], []).append([joint["sweep_min"], joint["sweep_max"]])
         boxes = np.full((len(rows), settings.sweep_boxes, 2, 3), np.nan, np.float32)
         for i, row in enumerate(rows):
-            merged = merged_boxes(np.array(swept.get(row["asset_id"], []), float).reshape(-1, 2, 3), settings.sweep_boxes)
+            whole = np.array(swept.get(row["asset_id"], []), float).reshape(-1, 2, 3)
+            merged = merged_boxes(beyond_body(whole, row["size"]), settings.sweep_boxes)
             boxes[i, : len(merged)] = merged
         shapes, finishes = zip(*(known[r["asset_id"]] for r in rows), strict=True)
         raw = np.array(shapes, float).reshape(len(rows), -1)

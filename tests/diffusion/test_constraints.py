@@ -23,6 +23,7 @@ from pipeline.diffusion.floor import floor_tokens
 from pipeline.diffusion.guidance import articulation_descent, size_shift
 from pipeline.diffusion.relations import Boxes, boxes_of
 from pipeline.diffusion.settings import SampleSettings
+from pipeline.geometry.kinematics import beyond_body
 from tests.diffusion.small_world import make_context
 
 FIELDS = ("centre", "half", "bottom", "height", "axis")
@@ -215,10 +216,13 @@ def test_a_new_size_keeps_the_back_where_it_is(norm):
     torch.testing.assert_close(after[0, 0, :2] - front * 0.25, -front * 0.3, atol=1e-5, rtol=0)
 
 
-def test_what_reaches_less_deep_than_the_slack_costs_nothing():
+def test_units_of_a_run_are_in_nobodys_way():
+    # Two units side by side; the left one's door, once open, has its handle 3 cm beyond its side, before its neighbour's front.
     _, rooms = room()
     there = torch.ones(1, 2, dtype=torch.bool)
-    for apart, free in ((0.95, True), (0.85, False)):
-        boxes = body([(0.0, 0.0, 1.0, 1.0, 0.0), (apart, 0.0, 1.0, 1.0, 0.0)])
-        assert float(articulated_collision(boxes, there, None, rooms)) > 0
-        assert (float(articulated_collision(boxes, there, None, rooms, slack=0.06)) == 0) == free
+    boxes = body([(-0.3, 0.0, 0.6, 0.6, 0.0), (0.3, 0.0, 0.6, 0.6, 0.0)])
+    whole = np.array([[[-0.33, -0.9, 0.0], [0.33, -0.28, 0.9]]])
+    for box, free in ((whole, False), (beyond_body(whole, np.array([0.6, 0.6, 0.9])), True)):
+        sweeps = torch.full((1, 2, 1, 2, 3), torch.nan)
+        sweeps[0, 0] = torch.from_numpy(box)
+        assert (float(articulated_collision(boxes, there, sweeps, rooms)) < 1e-12) == free

@@ -76,13 +76,22 @@ def test_a_blocked_drawer(gap, heuristic, joints):
 
 def test_extended_boxes_hold_the_sweep():
     rows = [object_row("cupboard", 1.0, 1.0, 0.7), object_row("bed", 3, 3)]
-    position, yaw, size = articulation.extended_boxes(rows, "joints", SWEEPS)
-    assert size[0, 1] == pytest.approx(0.5 + 0.6, abs=0.01)
-    assert size[1].tolist() == rows[1]["size"]
-    # The box grew ahead of the front, so its centre moved there.
+    (position, yaw, size), owners = articulation.extended_boxes(rows, "joints", SWEEPS)
+    assert owners.tolist() == [0, 1, *[0] * (len(owners) - 2)]
+    assert size[:2].tolist() == [rows[0]["size"], rows[1]["size"]]
+    # What the doors sweep lies ahead of the front, and reaches 60 cm.
     ahead = np.array([math.sin(0.7), -math.cos(0.7)])
-    assert (position[0, :2] - [1.0, 1.0]) @ ahead == pytest.approx(0.3, abs=0.01)
-    assert yaw[0] == 0.7
+    assert max(size[2:, 1]) == pytest.approx(0.6, abs=0.01)
+    np.testing.assert_allclose((position[2:, :2] - [1.0, 1.0]) @ ahead - size[2:, 1] / 2, size[0, 1] / 2)
+    assert (yaw[owners == 0] == 0.7).all()
+
+
+def test_a_door_that_opens_wider_than_its_cupboard_does_not_block_the_one_beside_it():
+    # The box of the whole way holds the shut door and the handle that later stands out beside the body: 2 cm of the neighbour, behind the front.
+    past_side = {"cupboard": SWEEPS["cupboard"] + np.array([[-0.03, 0.0, 0.0], [0.03, 0.0, 0.0]])}
+    beside, ahead = ([object_row("cupboard", 1.0, 1.0), object_row("small_block", 1.66, y)] for y in (1.05, 0.6))
+    assert articulation.are_obstructed(beside, "joints", past_side) == [False]
+    assert articulation.are_obstructed(ahead, "joints", past_side) == [True]
 
 
 def test_acoll_is_a_mean_of_rooms():
