@@ -17,8 +17,6 @@ from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, has_minus, split_words, words
 from pipeline.floorplan.language.tokens import read_words, segment
-from pipeline.floorplan.program.consistency import ImpossibleError
-from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence
 from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
 
 STOPS = frozenset(".;!?\n。;!?")
@@ -271,7 +269,7 @@ class Scan:
             step, value, at = next(((*said, j) for j in self._part(k + free, FAR) if (said := self._fraction(j))[0]), (0, 0.0, k))
             end = at + step
             while step and (
-                more := self.length(end, "of", "article", "floor", "home") or self.text(end) and self.words[end].start in self.rooms
+                more := self.length(end, "of", "article", "floor", "home") or (self.text(end) and self.words[end].start in self.rooms)
             ):
                 end += more
             return self._put("walkable", k, end, value=value) if step else 0
