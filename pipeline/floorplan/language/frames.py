@@ -84,8 +84,7 @@ def apply_frames(tokens: Sequence[Token], words: Words) -> list[Token]:
     signs = words.lexicon.signs
     rewritten: list[Token] = []
     for sentence in sentences_of(tokens):
-        said = sentence
-        names = [_names(m, signs) for m in said]
+        said, names = sentence, [_names(m, signs) for m in sentence]
         for frame in frames():
             here = frozenset().union(*names)
             if all(need & here for need in frame.needs):

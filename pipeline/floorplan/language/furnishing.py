@@ -110,7 +110,7 @@ class Scan:
             self.language = ""
         read = read_words(prompt, self.language) if self.language else None
         self.traits = read.lexicon.traits if read is not None else frozenset[str]()
-        written, tokens = (read.written, segment(read)) if read is not None else (split_words(prompt), [])
+        written, tokens = (read.written, segment(read)) if read is not None else (list(split_words(prompt)), [])
         folded = [fold(w.text) for w in written]
         texts = [w if stem(w) in _stems() else text for w, text in zip(folded, read.texts if read is not None else folded, strict=True)]
         self.words = [_Word(text, stem(text), t.start, t.end) for t, text in zip(written, texts, strict=True) if text != "-"]
@@ -144,10 +144,8 @@ class Scan:
 
     def phrase(self, k: int, *kinds: str) -> tuple[int, str]:
         """Return (length, name) of the longest phrase of those kinds at word k, (0, "") where there is none."""
-        for size, kind, name, owned in self._here(k):
-            if kind in kinds and (not owned or self._owned(k, name) or (name in lexicon()["listed"] and self._listed(k, size))):
-                return size, name
-        return 0, ""
+        here = ((size, name) for size, kind, name, owned in self._here(k) if kind in kinds and (not owned or self._owned(k, name, size)))
+        return next(here, (0, ""))
 
     def length(self, k: int, *kinds: str) -> int:
         """Return the length of the longest phrase of those kinds at word k."""
@@ -161,16 +159,16 @@ class Scan:
         """Return the phrases that begin at word k, none beyond the ends."""
         return self.there[k] if 0 <= k < len(self.words) else ()
 
-    def _owned(self, k: int, name: str) -> bool:
-        """Whether a room that has such things is named before word k in the same clause, or right after it."""
+    def _owned(self, k: int, name: str, size: int) -> bool:
+        """Whether a room that has such things is named before word k in the same clause, or right after it, or other things beside it."""
 
         def owner(j: int) -> bool:
             return any(kind == "owner" and of == name for _, kind, of, _ in self._here(j))
 
         stop = self.stops[bisect.bisect_left(self.stops, k) - 1]
         other, around = lexicon()["beside"].get(name), range(max(stop + 1, k - FAR), k + FAR)
-        named = [(j, size) for j in around if other for size, kind, of, _ in self._here(j) if (kind, of) == ("name", other)]
-        alone = [j for j, size in named if self.text(j + size) not in lexicon()["words"]["rooms"]]
+        named = [(j, length) for j in around if other for length, kind, of, _ in self._here(j) if (kind, of) == ("name", other)]
+        alone = [j for j, length in named if self.text(j + length) not in lexicon()["words"]["rooms"]]
         if any(self.length(i, "none") for j in alone for i in range(min(j, k) - 2, max(j, k))):
             return True  # "a shower instead of a bathtub"
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
@@ -179,7 +177,8 @@ class Scan:
             led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
             if led or between.rfind("(") > between.rfind(")"):
                 return True
-        return bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4))
+        listed = name in lexicon()["listed"] and self._listed(k, size)
+        return listed or (bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4)))
 
     def _listed(self, k: int, size: int) -> bool:
         """Whether the thing at word k stands behind another in a list, or heads one: "a desk and a wardrobe"."""
@@ -267,19 +266,14 @@ class Scan:
         """Read "70 % free", "at least half of the living room's floor must stay free", "空地70%", "free: 70 %"."""
         if free := self.length(k, "free"):
             step, value, at = next(((*said, j) for j in self._part(k + free, FAR) if (said := self._fraction(j))[0]), (0, 0.0, k))
-            end = at + step
-            while step and (
-                more := self.length(end, "of", "article", "floor", "home") or (self.text(end) and self.words[end].start in self.rooms)
-            ):
-                end += more
-            return self._put("walkable", k, end, value=value) if step else 0
+            behind = [j + 1 for j in self._part(at + step, NEAR) if self.length(j, "floor", "home") or self.words[j].start in self.rooms]
+            return self._put("walkable", k, max((at + step, *behind)), value=value) if step else 0
         start, at = k, k + self.length(k, "least", "exactly", "over")
         at += self.length(at, "article", "with") if at > k else 0
         step, value = self._fraction(at)
-        ends = [j for j in self._part(at + step, WIDE) if self.length(j, "free")] if step else []
-        if not ends or (ends[0] > at + step + NEAR and not any(self.length(j, "floor") for j in range(at + step, ends[0]))):
+        last = next((j for j in self._part(at + step, WIDE) if self.length(j, "free")), 0) if step else 0
+        if not last or (last > at + step + NEAR and not any(self.length(j, "floor") for j in range(at + step, last))):
             return 0
-        last = ends[0]
         while step := self.length(last, "free", "floor"):
             last += step
         while before := next((n for n in (4, 2, 1) if self.length(k - n, "floor", "of") == n), 0):  # "客厅地面至少60%"
@@ -288,9 +282,8 @@ class Scan:
 
     def _fraction(self, k: int) -> tuple[int, float]:
         """Return (length, value) of a share at word k: "60 %", "百分之六十", "two thirds"; (0, 0) for none."""
-        length, name = self.phrase(k, "fraction")
-        if length:
-            return length, float(name)
+        if (said := self.phrase(k, "fraction"))[0]:
+            return said[0], float(said[1])
         lead = self.length(k, "percent_of")
         length, value = self.number(k + lead)
         behind = 0 if value is None or lead else self.length(k + length, "percent")

@@ -3,7 +3,7 @@
 import bisect
 import itertools
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
@@ -32,7 +32,6 @@ FARTHEST = 24  # characters between a wish and the room that follows it
 LARGE = 8  # a number from here on is a size or a count, and missed where nothing took it
 CLOSE = 4  # the same where nothing but a particle stands between
 EMPTY = kinds("empty")
-READ = {"used"}  # what was read with its neighbours
 NOT_BUILT = {"unbuilt", "car"}  # a garage is one for one car
 STRESS = kinds("stress")  # flags that hold wherever they stand, and such as only underline what is said
 POINTING = {"each", "other", "own", "another"}  # determiners that say something
@@ -132,7 +131,7 @@ def _consumed_words(state: Reading, parsed: list[list[Token]], places: Sequence[
             has_statement = has_statement or any(e.kind == "flag" and e.value in STRESS for e in part)
             for k, e in enumerate(part):
                 if (
-                    e.kind in READ
+                    e.kind == "used"
                     or (e.kind == "owner" and (e.value in roles or any(x.kind in {"np", "home"} for x in part[:k])))
                     or (e.kind == "every" and (starred or has_statement))
                     or (e.kind == "flag" and e.value in STRESS)
@@ -194,21 +193,16 @@ def read_furniture(prompt: str) -> tuple[str, list[Claim]]:
     return "".join(text), claims
 
 
-def _rooms_inside(scan: Scan, claim: Claim) -> Iterator[int]:
-    """Yield where the words of a claim stand that name rooms, with "each" or "the" in front of them."""
-    for k, w in enumerate(scan.words):
-        if claim.start <= w.start < claim.end and w.start in scan.rooms:
-            yield from (scan.words[j].start for j in (k, k - 1, k - 2) if j == k or scan.length(j, "article") == 1)
-
-
 def _blank(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
     """Tell which words go: the wishes, what joins them, and what leads to them; rooms whose floor is to stay free are named there."""
-    named = {start for c in claims if c.kind == "walkable" for start in _rooms_inside(scan, c)}
-    inside = iter(sorted((c.start, c.end) for c in claims))
-    start, end = next(inside)
+    inside = [(k, w) for c in claims if c.kind == "walkable" for k, w in enumerate(scan.words) if c.start <= w.start < c.end]
+    at = [k for k, w in inside if w.start in scan.rooms and not scan.length(k - 1, "fraction")]  # "tres cuartos" are no rooms
+    named = {scan.words[j].start for k in at for j in (k, k - 1, k - 2) if j == k or scan.length(j, "article") == 1}  # "each bedroom"
+    spans = iter(sorted((c.start, c.end) for c in claims))
+    start, end = next(spans)
     gone = []
     for w in scan.words:
-        while w.start >= end and (following := next(inside, None)) is not None:
+        while w.start >= end and (following := next(spans, None)) is not None:
             start, end = following
         gone.append(start <= w.start < end and w.start not in named)
     for c in (c for c in claims if c.home):  # "everywhere" belongs to the wish for the whole home that it stands by

@@ -225,9 +225,8 @@ def settle(parsed: list[list[Token]]) -> None:
     everything = [e for s in parsed for e in s]
     one = any((e.kind == "home" and e.value) or e.type == "studio_room" or (e.value == "rooms" and e.number == 1) for e in everything)
     if one and not any(e.type == "bedroom" and not e.banned for e in everything):
-        for e in everything:
-            if e.kind == "np" and e.value == "kitchen/corner":
-                e.kind = "corner"
+        for e in (e for e in everything if (e.kind, e.value) == ("np", "kitchen/corner")):
+            e.kind = "corner"
 
 
 CONFLICTS = {
