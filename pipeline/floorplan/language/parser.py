@@ -345,10 +345,9 @@ class _Place:
                 return before[-1].ids
             return after[0].ids if not gap.strip() and after and not self._dwelling(after[0]) else ()
         likely = [m.ids for m in (*reversed(before), *after, *self.named) if self._natural(claim, m)]
-        if not before and claim.kind == "count":
-            return likely[0] if likely and claim.least else ()
         if not before:
-            return after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
+            near = after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
+            return near if claim.kind != "count" else likely[0] if likely and claim.least else ()
         room, usual = before[-1], self._natural(claim, before[-1])
         if self._dwelling(room) and not (claim.plural and usual):
             return ()  # "a two-bedroom flat with a sofa"; but "with bunk beds"

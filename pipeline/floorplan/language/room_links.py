@@ -136,6 +136,8 @@ def _link_rooms(draft: Draft, stock: Inventory, fact: Fact, facts: Sequence[Fact
     for a, b in pairs(fact.a, fact.b):
         kinds = {stock.get(a).type, stock.get(b).type}
         inner = bool({a, b} & stock.belongings)
+        if inner and kinds & HALLS and len(fact.a) + len(fact.b) > 2:
+            continue  # "two baths on the corridor, one en suite"
         kind = KINDS[fact.what]
         denied = any(f.what == "not_connected" and {a, b} <= {*f.a, *f.b} for f in facts)
         if fact.what == "near" and (inner or denied or len(kinds) == 1 or kinds <= {"bedroom", "office"}):

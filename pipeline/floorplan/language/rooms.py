@@ -187,9 +187,15 @@ def name(state: Reading, sentence: list[Token], k: int, level: int | None) -> Gr
     return e.ids
 
 
-def _resolve_phrase(state: Reading, sentence: list[Token], k: int, level: int | None) -> list[Named]:
+def _resolve_phrase(state: Reading, sentence: list[Token], k: int, level: int | None) -> list[Named]:  # noqa: PLR0911 - one answer per kind of phrase
     e, stock, role = sentence[k], state.inventory, sentence[k].role
     same = stock.of(e.type)
+    suites = next((x.ids for x in reversed(sentence[:k]) if x.suite and x.ids), ()) if e.type == "bedroom" and not role else ()
+    if suites and not e.ordinal and not e.number:
+        return [stock.get(i) for i in suites]
+    halls = [r for r in stock.rooms if r.type in {"hallway", "entry"} and _word(e) in r.surface.split()]
+    if e.type == "hallway" and e.definite and halls:
+        return halls[:1]
     if e.part:
         state.parted = e.type
         _fill(state, e, max(int(e.number), e.part))

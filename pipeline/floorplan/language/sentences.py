@@ -58,12 +58,15 @@ def _np(c: Clause, k: int, e: Token) -> None:
 
 
 def _own(c: Clause, e: Token, room: Named) -> None:
-    """Read "grandparents with their own bedroom and bathroom": what follows in the list is theirs."""
+    """Read "grandparents with their own bedroom, bathroom and small kitchen": what follows in the list is theirs."""
     if room.type == "bedroom" and "own" in e.det:
         room.role = room.role or c.owner
         c.owning = room.id
     elif c.owning and room.type == "bathroom" and not room.role and room.level in {None, c.stock.get(c.owning).level}:
         c.give((room.id,), (c.owning,), e)
+    elif c.owning and room.type == "kitchen":
+        room.role = c.stock.get(c.owning).role
+        c.state.say("door", (room.id,), (c.owning,), e)
 
 
 def _describe_rooms(c: Clause, k: int, e: Token, ids: tuple[str, ...]) -> None:
@@ -184,6 +187,8 @@ def relate(c: Clause, k: int, e: Token) -> int | None:  # noqa: PLR0911 - one an
     left, group, j = _sides(c, k, e)
     if not group:
         return _alone(c, k, e)
+    if c.sentence[j - 1].kind == "zone" and e.value in {"door", "in"}:  # "on the living side"
+        return j
     hosts = c.types(group)  # "X in Y" means that X opens off Y, as a cupboard in the hall does
     opens_off = bool(left and hosts) and (hosts <= HALLS or c.types(left) <= SECLUDED)
     if e.value == "in" and (c.negative is not None or (k and c.sentence[k - 1].kind == "and") or not opens_off):
@@ -332,7 +337,10 @@ def _give(c: Clause, k: int, e: Token, owners: Group) -> int:
     j, end, joined = k + 1, k + 1, ""
     given: Group = ()
     while (x := c.near(j)) is not None:
-        if x.kind == "np":
+        if x.kind == "np" and x.type == "bedroom" and not given and not x.ids and any(y.suite for y in c.sentence[:k]):
+            x.ids, joined, end = owners, "", j + 1  # "each suite has a bedroom of 18 m², its own bathroom ..."
+            c.measures(x)
+        elif x.kind == "np":
             if x.banned or x.type not in PERSONAL or (given and not joined) or not _theirs(c, j, owners, joined):
                 break
             ids = _things(c, j, owners)
