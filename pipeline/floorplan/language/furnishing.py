@@ -175,7 +175,7 @@ class Scan:
         if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
             between = self.prompt[self.words[at].end : self.words[k].start]
             led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
-            if led or between.rfind("(") > between.rfind(")"):
+            if led or between.rfind("(") > between.rfind(")") or (":" in between.partition(",")[0] and not any(map(str.isdigit, between))):
                 return True
         listed = name in lexicon()["listed"] and self._listed(k, size)
         return listed or (bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4)))
