@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ from pipeline.arrange.walls import EdgeOpening
 from pipeline.card import Hangs, cards
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
+from pipeline.floorplan.program.floor_program import Furniture
+from pipeline.floorplan.program.furniture import LAID
 from pipeline.geometry.convex import gap
 from pipeline.geometry.door_sweeps import leaf_sweep
 from pipeline.geometry.polygons import excess
@@ -39,14 +42,30 @@ EDGE = 0.08  # least distance of a rug from the walls [m]
 SHARES = (1.15, 1.0, 0.85, 0.7)  # shares of its size in which a rug is tried
 
 
-def small_things(home: Home, library: Library, settings: ThingsSettings, rng: np.random.Generator, touch: float) -> tuple[Placement, ...]:
+Wishes = Mapping[str, Furniture]  # by room id
+
+
+def small_things(
+    home: Home, library: Library, settings: ThingsSettings, rng: np.random.Generator, touch: float, wishes: Wishes
+) -> tuple[Placement, ...]:
     """Return small things for a home that is sound; what lies on furniture names its `support`.
 
-    They depend on the home and the generator alone. What finds no place is not missed: nobody has asked for it.
+    They depend on the home, the wishes and the generator alone. What finds no place is not missed, unless it was asked for: see `unlaid`.
     """
     if settings.rate <= 0:
         return ()
-    return tuple(p for room in home.plan.rooms for p in _Dressing(home, room, library, settings, rng, touch).things())
+    rooms = (_Dressing(home, room, library, settings, rng, touch) for room in home.plan.rooms)
+    return tuple(p for room in rooms for p in room.things(wishes.get(room.room.room_id, Furniture())))
+
+
+def unlaid(things: Sequence[Placement], wishes: Wishes) -> str:
+    """Return in words what was to be laid in a room and found no place there, "" where nothing is missing."""
+    for room_id, wish in wishes.items():
+        for asked in (c for c in wish.counts if c.category in LAID):
+            have = sum((p.room_id, p.category) == (room_id, asked.category) for p in things)
+            if have < asked.min:
+                return f"{room_id}: {have} {asked.category}, asked for at least {asked.min}"
+    return ""
 
 
 class _Dressing:
@@ -61,15 +80,19 @@ class _Dressing:
         self.found: list[Placement] = []
         self.count: Counter[str] = Counter()
 
-    def things(self) -> list[Placement]:
+    def things(self, wish: Furniture) -> list[Placement]:
         """Lay the rug, dress windows and walls, then lay things on and in the furniture."""
         if not self.furniture:
             return []
         known = self.layouts[0]
         surfaces = SurfacePlacement(self.room.polygon, self.furniture, self.library, self.settings, self.touch)
         for rug in (layout.rug for layout in self.layouts):
-            if rug and self.rng.random() < rug.share * self.settings.rate:
+            if rug and self.rng.random() < rug.share * self.settings.rate and all(c.category != rug.category for c in wish.counts):
                 self._rug(rug)
+        for asked in (c for c in wish.counts if c.category in LAID):
+            own = [lay.rug for lay in self.layouts if lay.rug and lay.rug.category == asked.category] or [Rug(asked.category, 1.0)]
+            for k in range(asked.min):
+                self._rug(replace(own[k % len(own)], middle=True))
         if known.windows or known.walls:
             hanging = self._hanging(surfaces)
             self._windows(hanging, known.windows)

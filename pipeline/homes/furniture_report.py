@@ -6,7 +6,7 @@ from typing import Any
 
 from pipeline import taxonomy
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq
-from pipeline.floorplan.program.furniture import matching_categories, plain
+from pipeline.floorplan.program.furniture import LAID, matching_categories, plain
 from pipeline.homes.room_finishing import bounds_in_words
 from pipeline.homes.rows import BEST
 
@@ -34,7 +34,7 @@ def deliveries(program: FloorProgram, rows: Mapping[str, Sequence[Mapping[str, A
     for room in program.rooms:
         wish = room.furniture
         if wish != Furniture() and room.id in measured:
-            objects = [o for o in rows["objects"] if o["room_id"] == room.id and o["category"] in pieces]
+            objects = [o for o in rows["objects"] if o["room_id"] == room.id and o["category"] in pieces | LAID]
             entries += _room(room, wish, measured[room.id], objects, styles)
     lacking = ((row["where"].rpartition("/")[2].partition("#")[0], row["detail"]) for row in rows["rejects"] if row["reason"] == BEST)
     return entries + [Delivery(room, "what makes the room", "unasked", detail, met=False) for room, detail in lacking]
@@ -55,7 +55,7 @@ def _room(
 ) -> list[Delivery]:
     entries: list[Delivery] = []
     if wish.least is not None or wish.most is not None:
-        entries.append(_delivery(room.id, "pieces", wish.least or 0, wish.most, len(objects)))
+        entries.append(_delivery(room.id, "pieces", wish.least or 0, wish.most, sum(o["category"] not in LAID for o in objects)))
     for things in wish.counts:
         have = sum(o["category"] in matching_categories(things, room.type) for o in objects)
         entries.append(_delivery(room.id, plain(things.category), things.min, things.max, have))
@@ -65,7 +65,7 @@ def _room(
         free = float(row["walkable_free"])
         entries.append(Delivery(room.id, "free floor", f"{wish.walkable:.0%}", f"{free:.0%}", free >= wish.walkable - 0.005))
     if wish.style is not None:
-        known = [styles[o["asset_id"]] for o in objects if styles.get(o["asset_id"])]
+        known = [styles[o["asset_id"]] for o in objects if styles.get(o["asset_id"]) and o["category"] not in LAID]
         text = f"{sum(s == wish.style for s in known)} of {len(known)} with a style" if known else "nothing has a style"
         entries.append(Delivery(room.id, "style", wish.style, text, None))
     return entries

@@ -19,7 +19,7 @@ from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError, SfgenError
 from pipeline.execution import tell
-from pipeline.homes.clutter import small_things
+from pipeline.homes.clutter import small_things, unlaid
 from pipeline.homes.empty_plan import closed_rooms
 from pipeline.homes.furnish import Draft, draft_rooms
 from pipeline.homes.outcomes import Empty, Outcome, files_of
@@ -177,14 +177,17 @@ class HomeLife:
     def judge(self) -> None:
         """Lay small things and verify the whole home; what is at fault goes, and a room that is then not good enough is tried again."""
         r, bare = self.resources, self.home
+        wishes = {job.room_id: job.furniture for job in self.planned.jobs if r.postopt.things.rate > 0}
         with r.time("things"):
             draw = seeds.generator(r.seed, "things", self.request.index, self.plan_attempt)
-            things = small_things(bare, r.library, r.postopt.things, draw, r.postopt.separate.touch)
+            things = small_things(bare, r.library, r.postopt.things, draw, r.postopt.separate.touch, wishes)
         things, certificate, violating = self._verdict(bare, things)
         if violating:
             self._expel(violating)  # things are laid anew on what is left
         elif faults := certificate.faults(r.verify.policy, self.closed):
             self._replan(*faults[0])
+        elif lacking := unlaid(things, wishes):
+            self._replan("category_missed", lacking)
         else:
             self.things, self.certificate = things, certificate
 

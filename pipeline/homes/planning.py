@@ -11,7 +11,7 @@ from pipeline.entities.plan import Plan
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.program.floor_program import Furniture
-from pipeline.floorplan.program.furniture import least_pieces, matching_categories, plain
+from pipeline.floorplan.program.furniture import LAID, least_pieces, matching_categories, plain
 from pipeline.homes.empty_plan import judge_empty
 from pipeline.homes.furnish import Draft
 from pipeline.homes.request import Request, RoomJob, layout_type
@@ -83,7 +83,8 @@ def _check_possible(resources: Resources, room_id: str, kind: str, wish: Furnitu
             "ask for fewer, or train with more train.slots",
         )
     for things in wish.counts:
-        if things.min and not any(resources.index.shelves.get(name) is not None for name in matching_categories(things, kind)):
+        names = matching_categories(things, kind)
+        if things.min and not any(resources.library.of(n) if n in LAID else resources.index.shelves.get(n) is not None for n in names):
             raise RefusedError(f"the library has no {plain(things.category)} for {room_id}", "ask for something else")
 
 

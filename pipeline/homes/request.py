@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pipeline.diffusion.context import CategoryBounds
 from pipeline.entities.plan import Plan, Room
 from pipeline.floorplan.program.floor_program import Furniture
-from pipeline.floorplan.program.furniture import matching_categories
+from pipeline.floorplan.program.furniture import arranged, matching_categories
 from pipeline.taxonomy import Taxonomy
 
 LIVING = frozenset({"living_room", "family_room"})
@@ -63,7 +63,7 @@ class RoomJob:
     def category_bounds(self) -> tuple[CategoryBounds, ...]:
         """What is wished for by category, as the sampler takes it."""
         kind = self.room.type
-        return tuple(CategoryBounds(matching_categories(c, kind), c.min, c.max) for c in self.furniture.counts)
+        return tuple(CategoryBounds(matching_categories(c, kind), c.min, c.max) for c in arranged(self.furniture))
 
     def essentials(self, taxonomy: Taxonomy) -> tuple[tuple[str, ...], ...]:
         """Return the groups of categories of which the room needs one thing each; a stated number of objects may be too small for them."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pipeline import taxonomy
 from pipeline.arrange import Site, post_optimise
 from pipeline.entities.home import Placement
-from pipeline.floorplan.program.furniture import matching_categories
+from pipeline.floorplan.program.furniture import arranged, matching_categories
 from pipeline.homes.furnish import Draft, round_placement
 from pipeline.homes.resources import Resources
 from pipeline.homes.violations import Violation
@@ -68,7 +68,7 @@ class RoomResult:
         least, most = job.bounds
         if len(placements) < (least or 0) or (most is not None and len(placements) > most):
             return "count_missed", f"{len(placements)} objects, asked for {bounds_in_words(least or 0, most)}"
-        for wish in job.furniture.counts:
+        for wish in arranged(job.furniture):
             have = sum(p.category in matching_categories(wish, job.room.type) for p in placements)
             if have < wish.min or (wish.max is not None and have > wish.max):
                 return "category_missed", f"{have} {wish.category}, asked for {bounds_in_words(wish.min, wish.max)}"
@@ -86,12 +86,12 @@ def finish(draft: Draft, resources: Resources) -> RoomResult:
     site = Site.of(job.plan, job.room_id, replace(robot, radius=robot.radius + MARGIN), r.verify.cell)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
     smaller = r.index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
-    counted = job.bounds[0] is not None or bool(job.furniture.counts)
-    arranged, free = post_optimise(site, draft.placements, r.library, r.learnt, r.postopt, smaller, target=job.walkable, keep_count=counted)
-    placements = tuple(round_placement(p) for p in arranged.placements)
-    rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in arranged.rejects]
+    counted = job.bounds[0] is not None or bool(arranged(job.furniture))
+    stands, free = post_optimise(site, draft.placements, r.library, r.learnt, r.postopt, smaller, target=job.walkable, keep_count=counted)
+    placements = tuple(round_placement(p) for p in stands.placements)
+    rejects += [("object", r.reason, f"{r.object_id}: {r.detail}") for r in stands.rejects]
     openers = frozenset(p.asset_id for p in placements if r.library[p.asset_id].openable)
-    result = RoomResult(draft, placements, tuple(rejects), free=free, openers=openers, unreached=arranged.unreached)
+    result = RoomResult(draft, placements, tuple(rejects), free=free, openers=openers, unreached=stands.unreached)
     return result.judged()
 
 

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from pipeline.card import cards
+from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.geometry.polygons import boundary_distance
+from pipeline.homes import clutter
+from pipeline.homes.furniture_report import deliveries
 from pipeline.homes.request import Request
 from pipeline.taxonomy import load
 from pipeline.verify import verify_home
@@ -106,3 +109,25 @@ def test_what_lies_on_furniture_can_be_taken_away():
     assert not any(words.categories[name].layout for name in besides)
     assert not words.categories["curtain"].loose
     assert not words.categories["room_door"].loose
+
+
+def rugs(outcome, kind):
+    rooms = {r.room_id for r in outcome.home.plan.rooms if r.type == kind}
+    return sum(p.category == "rug" and p.room_id in rooms for p in outcome.home.placements)
+
+
+def test_a_rug_that_is_asked_for_lies_where_it_was_asked_for_and_none_where_it_was_ruled_out(stocked):
+    rare = replace(stocked, postopt=replace(stocked.postopt, things=replace(stocked.postopt.things, rate=0.01)))
+    words = ("a one-bedroom flat of 60 m2", "the bedroom has a rug", "the living room has no rug")
+    without, asked = rare.make([Request(0, words[0]), Request(0, "; ".join(words[:2]))], files=False)
+    (ruled_out,) = stocked.make([Request(0, "; ".join(words))], files=False)
+    assert [rugs(o, "bedroom") for o in (without, asked, ruled_out)] == [0, 1, 1]
+    assert rugs(ruled_out, "living_room") == 0
+    program = FloorProgram.model_validate_json(asked.home.program)
+    assert ("rug", True) in [(d.what, d.met) for d in deliveries(program, asked.rows, {})]
+
+
+def test_a_rug_that_finds_no_place_is_refused_as_any_wish_is(stocked, monkeypatch):
+    monkeypatch.setattr(clutter, "lay_rug", lambda *_: None)
+    (empty,) = stocked.make([Request(0, "a one-bedroom flat of 60 m2; the bedroom has a rug")], files=False)
+    assert "category_missed (bed: 0 rug" in str(empty.error)

@@ -231,7 +231,7 @@ def _whole(draft: Draft, state: Reading) -> None:
     _levels(state)
     storeys = max(state.storeys[0] if state.storeys else 1, *(r.level + 1 for r in stock.rooms if r.level is not None), 1)
     said = [(state.storeys[1].first, state.storeys[1].last)] if state.storeys else []
-    for first, last in said:
+    for first, last in (*said, *((e.first, e.last) for e in state.levels)):
         draft.cite(first, last, "storeys")
     if storeys > MOST_STOREYS:
         draft.refuse(f"{storeys} storeys are asked for", f"ask for {MOST_STOREYS} at most", said, "storeys")
@@ -241,8 +241,6 @@ def _whole(draft: Draft, state: Reading) -> None:
     if storeys > 1 and single and above:
         spans = [(single[0].first, single[0].last), *above]
         draft.refuse("a home of one storey has nothing upstairs", "ask for two storeys", spans, "storeys")
-    for e in state.levels:
-        draft.cite(e.first, e.last, "storeys")
     fields["storeys"] = storeys
     for room in stock.rooms if storeys == 1 else ():
         room.level = 0

@@ -84,8 +84,7 @@ def apply_frames(tokens: Sequence[Token], words: Words) -> list[Token]:
     signs = words.lexicon.signs
     rewritten: list[Token] = []
     for sentence in sentences_of(tokens):
-        said = sentence
-        names = [_names(m, signs) for m in said]
+        said, names = sentence, [_names(m, signs) for m in sentence]
         for frame in frames():
             here = frozenset().union(*names)
             if all(need & here for need in frame.needs):
@@ -169,15 +168,11 @@ class _Reader:
         if atom.names & self.names[k]:
             yield k + 1
         if atom.slot in PHRASES and (end := phrase(self.tokens, k)):
-            if not atom.types or self._type(k, end) in atom.types:
+            head = next(m for m in self.tokens[k:end] if m.kind in HEADS)
+            if not atom.types or ("bedroom" if head.kind == "suite" else head.value.partition("/")[0]) in atom.types:
                 yield end
         elif atom.slot in LISTS:
             yield from reversed(list_ends(self.tokens, k, self.names)[atom.slot == "L" :])
-
-    def _type(self, k: int, end: int) -> str:
-        """Return the type of the room that a phrase names."""
-        head = next(m for m in self.tokens[k:end] if m.kind in HEADS)
-        return "bedroom" if head.kind == "suite" else head.value.partition("/")[0]
 
 
 def phrase(tokens: Sequence[Token], k: int) -> int:

@@ -17,14 +17,12 @@ from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, has_minus, split_words, words
 from pipeline.floorplan.language.tokens import read_words, segment
-from pipeline.floorplan.program.consistency import ImpossibleError
-from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence
 from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
 
 STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
 MOST, MOST_WORDS = 1e6, 6  # of any amount, and of a numeral
-NEAR, FAR, OWNED = 5, 7, 14  # words in which "everywhere", "free" and an owner are looked for
+NEAR, FAR, WIDE, OWNED = 5, 7, 16, 14  # words in which "everywhere", a share, "free" and an owner are looked for
 MOST_SEATS = 16
 LEADS = ("with", "in", "is", "and", "article", "least", "most", "exactly", "between")  # behind these a dash before a number is no list's
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
@@ -71,7 +69,7 @@ def _phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...
     listed += [("small", form, form) for form in data["small"]]
     listed += [("look", name, form) for name, some in data["styles"].items() for form in some]
     listed += [(kind, str(form), str(form)) for kind, some in data["words"].items() for form in some if form != "-"]
-    listed += [("owner", name, form) for name, some in data["owners"].items() for form in some]
+    listed += [(kind, str(name), form) for kind in ("owner", "fraction") for name, some in data[f"{kind}s"].items() for form in some]
     table: dict[str, list[tuple[tuple[str, ...], str, str, bool]]] = {}
     for kind, name, form in listed:
         stems = stemmed(form)
@@ -112,7 +110,7 @@ class Scan:
             self.language = ""
         read = read_words(prompt, self.language) if self.language else None
         self.traits = read.lexicon.traits if read is not None else frozenset[str]()
-        written, tokens = (read.written, segment(read)) if read is not None else (split_words(prompt), [])
+        written, tokens = (read.written, segment(read)) if read is not None else (list(split_words(prompt)), [])
         folded = [fold(w.text) for w in written]
         texts = [w if stem(w) in _stems() else text for w, text in zip(folded, read.texts if read is not None else folded, strict=True)]
         self.words = [_Word(text, stem(text), t.start, t.end) for t, text in zip(written, texts, strict=True) if text != "-"]
@@ -146,7 +144,7 @@ class Scan:
 
     def phrase(self, k: int, *kinds: str) -> tuple[int, str]:
         """Return (length, name) of the longest phrase of those kinds at word k, (0, "") where there is none."""
-        here = ((size, name) for size, kind, name, owned in self._here(k) if kind in kinds and (not owned or self._owned(k, name)))
+        here = ((size, name) for size, kind, name, owned in self._here(k) if kind in kinds and (not owned or self._owned(k, name, size)))
         return next(here, (0, ""))
 
     def length(self, k: int, *kinds: str) -> int:
@@ -161,25 +159,39 @@ class Scan:
         """Return the phrases that begin at word k, none beyond the ends."""
         return self.there[k] if 0 <= k < len(self.words) else ()
 
-    def _owned(self, k: int, name: str) -> bool:
-        """Whether a room that has such things is named before word k in the same clause, or right after it."""
+    def _owned(self, k: int, name: str, size: int) -> bool:
+        """Whether a room that has such things is named before word k in the same clause, or right after it, or other things beside it."""
 
         def owner(j: int) -> bool:
             return any(kind == "owner" and of == name for _, kind, of, _ in self._here(j))
 
         stop = self.stops[bisect.bisect_left(self.stops, k) - 1]
         other, around = lexicon()["beside"].get(name), range(max(stop + 1, k - FAR), k + FAR)
-        named = [(j, size) for j in around if other for size, kind, of, _ in self._here(j) if (kind, of) == ("name", other)]
-        alone = [j for j, size in named if self.text(j + size) not in lexicon()["words"]["rooms"]]
+        named = [(j, length) for j in around if other for length, kind, of, _ in self._here(j) if (kind, of) == ("name", other)]
+        alone = [j for j, length in named if self.text(j + length) not in lexicon()["words"]["rooms"]]
         if any(self.length(i, "none") for j in alone for i in range(min(j, k) - 2, max(j, k))):
             return True  # "a shower instead of a bathtub"
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
             between = self.prompt[self.words[at].end : self.words[k].start]
             led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
-            if led or between.rfind("(") > between.rfind(")"):
+            if led or between.rfind("(") > between.rfind(")") or (":" in between.partition(",")[0] and not any(map(str.isdigit, between))):
                 return True
-        return bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4))
+        listed = name in lexicon()["listed"] and self._listed(k, size)
+        return listed or (bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4)))
+
+    def _listed(self, k: int, size: int) -> bool:
+        """Whether the thing at word k stands behind another in a list, or heads one: "a desk and a wardrobe"."""
+        small = ("one", "article", "size", "look")
+        at = next(j for j in range(k - 1, -2, -1) if not self.length(j, *small) and self.number(j)[1] is None)
+        if self.length(at, "and"):
+            while self.length(at - 1, "and"):
+                at -= 1
+            return any(self.phrase(j, "name")[0] == at - j for j in range(max(at - 4, 0), at))
+        at = k + size + (self.length(k + size, "and") if at < k - 1 else 0)
+        while at > k + size and (step := self.length(at, *small) or self.number(at)[0]):
+            at += step
+        return at > k + size and any(kind == "name" and not owned for _, kind, _, owned in self._here(at))
 
     def number(self, k: int) -> tuple[int, float | None]:
         """Return (length, value) of a numeral at word k; of "8 to 10" only the first is read here."""
@@ -241,31 +253,41 @@ class Scan:
         begin = self.stops[bisect.bisect_left(self.stops, first) - 1] + 1
         left = next((j for j in range(first - 1, max(begin, first - NEAR) - 1, -1) if self.text(j) in COMMAS), max(begin, first - NEAR) - 1)
         right = next((j for j in range(last, last + NEAR - 1) if self.text(j) in COMMAS), last + NEAR - 1)
-        home = any(self.length(j, "home") for j in (*range(left + 1, first), *range(last, right)))
+        home = any(self.length(j, "home") for j in range(left + 1, right))
+        home = home or (
+            kind == "walkable"
+            and any(self.length(j, "dwelling") and w.start in self.rooms for j, w in enumerate(self.words[first:last], first))
+        )
         start, end = self.words[first].start, self.words[last - 1].end
         self.claims.append(Claim(kind, start, end, name, least, most, value, home, self.length(last, "in") > self.length(last, "none")))
         return last - first
 
     def _share(self, k: int) -> int:
-        """Read "70 % free", "at least seventy per cent of the floor free", "空地70%", "free: 70 %"."""
+        """Read "70 % free", "at least half of the living room's floor must stay free", "空地70%", "free: 70 %"."""
         if free := self.length(k, "free"):
-            for j, (length, value) in ((j, self.number(j)) for j in self._part(k + free, NEAR)):
-                if value is not None and (percent := self.length(j + length, "percent")):
-                    return self._put("walkable", k, j + length + percent, value=value / 100)
+            step, value, at = next(((*said, j) for j in self._part(k + free, FAR) if (said := self._fraction(j))[0]), (0, 0.0, k))
+            behind = [j + 1 for j in self._part(at + step, NEAR) if self.length(j, "floor", "home") or self.words[j].start in self.rooms]
+            return self._put("walkable", k, max((at + step, *behind)), value=value) if step else 0
+        start, at = k, k + self.length(k, "least", "exactly", "over")
+        at += self.length(at, "article", "with") if at > k else 0
+        step, value = self._fraction(at)
+        last = next((j for j in self._part(at + step, WIDE) if self.length(j, "free")), 0) if step else 0
+        if not last or (last > at + step + NEAR and not any(self.length(j, "floor") for j in range(at + step, last))):
             return 0
-        at = k + self.length(k, "least", "exactly")
-        at += self.length(at, "article") if at > k else 0
-        fraction = self.length(k, "percent_of")
-        length, value = self.number(k + fraction if fraction else at)
-        half = self.length(at, "half") if value is None else 0
-        percent = 0 if value is None or fraction else self.length(at + length, "percent")
-        if not (half or percent or (fraction and value is not None)):
-            return 0
-        end = k + fraction + length if fraction else at + length + half + percent
-        last = free = next((j for j in self._part(end, FAR) if self.length(j, "free")), 0)
-        while free and (step := self.length(last, "free", "floor")):
+        while step := self.length(last, "free", "floor"):
             last += step
-        return self._put("walkable", k, last, value=0.5 if value is None else value / 100) if free else 0
+        while before := next((n for n in (4, 2, 1) if self.length(k - n, "floor", "of") == n), 0):  # "客厅地面至少60%"
+            k -= before
+        return self._put("walkable", k, last, value=value) - start + k
+
+    def _fraction(self, k: int) -> tuple[int, float]:
+        """Return (length, value) of a share at word k: "60 %", "百分之六十", "two thirds"; (0, 0) for none."""
+        if (said := self.phrase(k, "fraction"))[0]:
+            return said[0], float(said[1])
+        lead = self.length(k, "percent_of")
+        length, value = self.number(k + lead)
+        behind = 0 if value is None or lead else self.length(k + length, "percent")
+        return (lead + length + behind, value / 100) if value is not None and (lead or behind) else (0, 0.0)
 
     def _part(self, k: int, most: int) -> Iterator[int]:
         """Yield the places from k on as far as the next comma, `most` at most."""
@@ -337,62 +359,3 @@ class Scan:
         """Note the style that stands between an amount and a thing."""
         if length:
             self._put("style", k, k + length, self.phrase(k, "look")[1])
-
-
-def read_furniture(prompt: str) -> tuple[str, list[Claim]]:
-    """Return the prompt without its wishes for furniture (blanks in their place, so that places hold), and the wishes.
-
-    Raises ImpossibleError for more things than any room may have or fewer than none, and for a share of floor above 100 %.
-    """
-    scan = Scan(prompt)
-    claims = scan.run()
-    if not claims:
-        return prompt, claims
-    for c in claims:
-        least, most, start = min(c.least, c.most or 0, c.value), max(c.least, c.most or 0), c.start - has_minus(prompt, c.start)
-        if least >= 0 and most <= MAX_PIECES and c.value <= 1.0:
-            continue
-        said = [Evidence(start=start, end=c.end, text=prompt[start : c.end], field="furniture")]
-        what, advice = (f"{c.value:.0%} of a floor", "100% at most") if c.value else (f"{most} things", f"{MAX_PIECES} at most")
-        what, advice = ("fewer than none", "numbers above zero") if least < 0 else (what, advice)
-        raise ImpossibleError(f"{what} are asked for", f"ask for {advice}", said)
-    text = list(prompt)
-    for w, gone in zip(scan.words, _blank(scan, claims), strict=True):
-        if gone:
-            text[w.start : w.end] = " " * (w.end - w.start)
-    return "".join(text), claims
-
-
-def _blank(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
-    """Tell which words go: the wishes, what joins them, and what leads to them."""
-    inside = iter(sorted((c.start, c.end) for c in claims))
-    start, end = next(inside)
-    gone = []
-    for w in scan.words:
-        while w.start >= end and (following := next(inside, None)) is not None:
-            start, end = following
-        gone.append(start <= w.start < end)
-    for c in (c for c in claims if c.home):  # "everywhere" belongs to the wish for the whole home that it stands by
-        for j, w in enumerate(scan.words):
-            if c.start - 40 < w.start < c.end + 40 and (step := scan.length(j, "home")):
-                gone[j : j + step] = [True] * step
-    blank, k = list(gone), 0
-    while k < len(gone):
-        if not gone[k]:
-            k += 1
-            continue
-        last = j = k
-        while j < len(gone) and (gone[j] or (step := scan.length(j, "and", "with", "article"))):  # on over what joins two wishes
-            last, j = (j, j + 1) if gone[j] else (last, j + step)
-        blank[k : last + 1] = [True] * (last + 1 - k)
-        lead = next((n for n in (3, 2, 1) if k - n >= 0 and scan.length(k - n, "with") == n), 0)
-        join = scan.length(last + 1, "and") if scan.text(last + 1) not in STOPS else 0
-        counted = scan.number(last + 1 + join)[1] is not None  # "two bedrooms with wardrobes and one bathroom": nobody's own
-        kinds = ("owned",) if scan.text(last + 1) in COMMAS else ("owned", "own_rooms")
-        shared = join and not counted and any(scan.length(i, *kinds) for i in range(last + 1 + join, last + 4 + join))
-        if lead and shared:  # a room of the same owner follows: the "and" goes, else the "with"
-            blank[last + 1 : last + 1 + join] = [True] * join
-        elif lead:
-            blank[k - lead : k] = [True] * lead
-        k = last + 1
-    return blank

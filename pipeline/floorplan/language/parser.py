@@ -12,17 +12,17 @@ from pydantic import ValidationError
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.frames import apply_frames, join_brackets
-from pipeline.floorplan.language.furnishing import STOPS, Claim, Scan, read_furniture
+from pipeline.floorplan.language.furnishing import COMMAS, STOPS, Claim, Scan
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.phrases import ban, refuse, sentences, settle
 from pipeline.floorplan.language.rooms import Reading, introduce
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.text import split_words
+from pipeline.floorplan.language.text import has_minus, split_words
 from pipeline.floorplan.language.tokens import Token, amounts, read_words, segment
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
-from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, Furniture, Span, Things
+from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence, FloorProgram, Furniture, Span, Things
 from pipeline.floorplan.program.furniture import impossible, natural
 
 LONGEST = 20_000  # characters
@@ -32,7 +32,6 @@ FARTHEST = 24  # characters between a wish and the room that follows it
 LARGE = 8  # a number from here on is a size or a count, and missed where nothing took it
 CLOSE = 4  # the same where nothing but a particle stands between
 EMPTY = kinds("empty")
-READ = {"used"}  # what was read with its neighbours
 NOT_BUILT = {"unbuilt", "car"}  # a garage is one for one car
 STRESS = kinds("stress")  # flags that hold wherever they stand, and such as only underline what is said
 POINTING = {"each", "other", "own", "another"}  # determiners that say something
@@ -132,7 +131,7 @@ def _consumed_words(state: Reading, parsed: list[list[Token]], places: Sequence[
             has_statement = has_statement or any(e.kind == "flag" and e.value in STRESS for e in part)
             for k, e in enumerate(part):
                 if (
-                    e.kind in READ
+                    e.kind == "used"
                     or (e.kind == "owner" and (e.value in roles or any(x.kind in {"np", "home"} for x in part[:k])))
                     or (e.kind == "every" and (starred or has_statement))
                     or (e.kind == "flag" and e.value in STRESS)
@@ -167,7 +166,69 @@ def _says(state: Reading, tokens: Sequence[Token], k: int) -> bool:
     return not (few and ahead is not None and ahead.kind in {"owner", "fill", "word", "verb"})
 
 
-# the rooms that wishes for furniture are for
+# wishes for furniture, and the rooms that they are for
+
+
+def read_furniture(prompt: str) -> tuple[str, list[Claim]]:
+    """Return the prompt without its wishes for furniture (blanks in their place, so that places hold), and the wishes.
+
+    Raises ImpossibleError for more things than any room may have or fewer than none, and for a share of floor above 100 %.
+    """
+    scan = Scan(prompt)
+    claims = scan.run()
+    if not claims:
+        return prompt, claims
+    for c in claims:
+        least, most, start = min(c.least, c.most or 0, c.value), max(c.least, c.most or 0), c.start - has_minus(prompt, c.start)
+        if least >= 0 and most <= MAX_PIECES and c.value <= 1.0:
+            continue
+        said = [Evidence(start=start, end=c.end, text=prompt[start : c.end], field="furniture")]
+        what, advice = (f"{c.value:.0%} of a floor", "100% at most") if c.value else (f"{most} things", f"{MAX_PIECES} at most")
+        what, advice = ("fewer than none", "numbers above zero") if least < 0 else (what, advice)
+        raise ImpossibleError(f"{what} are asked for", f"ask for {advice}", said)
+    text = list(prompt)
+    for w, gone in zip(scan.words, _blank(scan, claims), strict=True):
+        if gone:
+            text[w.start : w.end] = " " * (w.end - w.start)
+    return "".join(text), claims
+
+
+def _blank(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
+    """Tell which words go: the wishes, what joins them, and what leads to them; rooms whose floor is to stay free are named there."""
+    inside = [(k, w) for c in claims if c.kind == "walkable" for k, w in enumerate(scan.words) if c.start <= w.start < c.end]
+    at = [k for k, w in inside if w.start in scan.rooms and not scan.length(k - 1, "fraction")]  # "tres cuartos" are no rooms
+    named = {scan.words[j].start for k in at for j in (k, k - 1, k - 2) if j == k or scan.length(j, "article") == 1}  # "each bedroom"
+    spans = iter(sorted((c.start, c.end) for c in claims))
+    start, end = next(spans)
+    gone = []
+    for w in scan.words:
+        while w.start >= end and (following := next(spans, None)) is not None:
+            start, end = following
+        gone.append(start <= w.start < end and w.start not in named)
+    for c in (c for c in claims if c.home):  # "everywhere" belongs to the wish for the whole home that it stands by
+        for j, w in enumerate(scan.words):
+            if c.start - 40 < w.start < c.end + 40 and (step := scan.length(j, "home")):
+                gone[j : j + step] = [True] * step
+    blank, k = list(gone), 0
+    while k < len(gone):
+        if not gone[k]:
+            k += 1
+            continue
+        last = j = k
+        while j < len(gone) and (gone[j] or (step := scan.length(j, "and", "with", "article"))):  # on over what joins two wishes
+            last, j = (j, j + 1) if gone[j] else (last, j + step)
+        blank[k : last + 1] = [True] * (last + 1 - k)
+        lead = next((n for n in (3, 2, 1) if k - n >= 0 and scan.length(k - n, "with") == n), 0)
+        join = scan.length(last + 1, "and") if scan.text(last + 1) not in STOPS else 0
+        counted = scan.number(last + 1 + join)[1] is not None  # "two bedrooms with wardrobes and one bathroom": nobody's own
+        kinds = ("owned",) if scan.text(last + 1) in COMMAS else ("owned", "own_rooms")
+        shared = join and not counted and any(scan.length(i, *kinds) for i in range(last + 1 + join, last + 4 + join))
+        if lead and shared:  # a room of the same owner follows: the "and" goes, else the "with"
+            blank[last + 1 : last + 1 + join] = [True] * join
+        elif lead:
+            blank[k - lead : k] = [True] * lead
+        k = last + 1
+    return blank
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,6 +334,8 @@ class _Place:
         after = [m for m in self.named if claim.end <= m.start and m.end <= end]
         gap = self.prompt[claim.end : after[0].start] if after else " " * FARTHEST
         inward = claim.inward and len(gap) < FARTHEST and "," not in gap
+        if inside := [m for m in self.named if claim.start <= m.start and m.end <= claim.end]:
+            return inside[0].ids  # "at least half of the living room must stay free"
         if claim.home or (claim.kind == "style" and not after and not before):
             return ()
         if inward or (len(gap) <= CLOSE and self.scan.length(self._at(claim.end), "of")):  # "带淋浴的卫生间"
@@ -282,10 +345,9 @@ class _Place:
                 return before[-1].ids
             return after[0].ids if not gap.strip() and after and not self._dwelling(after[0]) else ()
         likely = [m.ids for m in (*reversed(before), *after, *self.named) if self._natural(claim, m)]
-        if not before and claim.kind == "count":
-            return likely[0] if likely and claim.least else ()
         if not before:
-            return after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
+            near = after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
+            return near if claim.kind != "count" else likely[0] if likely and claim.least else ()
         room, usual = before[-1], self._natural(claim, before[-1])
         if self._dwelling(room) and not (claim.plural and usual):
             return ()  # "a two-bedroom flat with a sofa"; but "with bunk beds"

@@ -225,11 +225,8 @@ def settle(parsed: list[list[Token]]) -> None:
     everything = [e for s in parsed for e in s]
     one = any((e.kind == "home" and e.value) or e.type == "studio_room" or (e.value == "rooms" and e.number == 1) for e in everything)
     if one and not any(e.type == "bedroom" and not e.banned for e in everything):
-        for k, e in enumerate(everything):
-            ahead = everything[k + 1].kind if k + 1 < len(everything) else ""
-            little = e.size < 1.0 and ahead not in {"cue", "verb"}  # and nothing is said of it
-            if e.kind == "np" and e.type == "kitchen" and (little or e.value == "kitchen/corner"):
-                e.kind = "corner"
+        for e in (e for e in everything if (e.kind, e.value) == ("np", "kitchen/corner")):
+            e.kind = "corner"
 
 
 CONFLICTS = {

@@ -48,7 +48,8 @@ def _np(c: Clause, k: int, e: Token) -> None:
     ids = c.rooms_at(k)
     if c.left_out and e.det & {"each", "all"}:
         ids, c.run = tuple(i for i in ids if i not in c.left_out), []
-    _own(c, e, c.stock.get(ids[0]) if c.owner else None)
+    if c.owner:
+        _own(c, e, c.stock.get(ids[0]))
     for token, rooms in c.shares(e, ids):
         whole = (e.compound and token.last <= e.first) or measures_home(c, k, token, e.ids, False)
         c.state.amounts.append((token, None if whole else rooms))
@@ -56,10 +57,8 @@ def _np(c: Clause, k: int, e: Token) -> None:
     _describe_rooms(c, k, e, ids)
 
 
-def _own(c: Clause, e: Token, room: Named | None) -> None:
+def _own(c: Clause, e: Token, room: Named) -> None:
     """Read "grandparents with their own bedroom, bathroom and small kitchen": what follows in the list is theirs."""
-    if room is None:
-        return
     if room.type == "bedroom" and "own" in e.det:
         room.role = room.role or c.owner
         c.owning = room.id

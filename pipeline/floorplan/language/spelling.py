@@ -166,10 +166,11 @@ ROOMS_WEIGHT = 2.0
 @functools.lru_cache(maxsize=16)
 def detect(prompt: str) -> Language:
     """Return the language of a prompt. Raises RefusedError where too few of its words belong to any that is read."""
-    written = split_words(prompt)
+    written, quoted = split_words(prompt), repr(" ".join(prompt.split())[:60])
+    *most, last = sorted(lexicon(language).name for language in LANGUAGES)
     texts = [fold(t.text) for t in written if any(c.isalpha() for c in t.text)][:MOST]
     if not texts:
-        raise RefusedError(_quote_prompt(prompt, "no words in the prompt"), f"say in {_read()} which rooms you want")
+        raise RefusedError(f"no words in the prompt: {quoted}", f"say in {', '.join(most)} or {last} which rooms you want")
     han = sum(is_han(t[0]) for t in texts)
     letters = characters()["latin"] + characters()["han"]
     foreign = sum(t.text[0].isalpha() and not re.match(rf"[{letters}]", t.text) for t in written)  # in a script that is not read
@@ -183,23 +184,13 @@ def detect(prompt: str) -> Language:
     others = sum(t in unread() for t in texts)
     share = (exact + REPAIR * close + min(han, 2)) / len(texts)
     if foreign > 0.3 * len(texts) or share < ENOUGH or (others > 1 and others >= 0.15 * len(texts)):
-        raise RefusedError(_quote_prompt(prompt, "the prompt is in no language that is read here"), f"write it in {_read()}")
+        raise RefusedError(f"the prompt is in no language that is read here: {quoted}", f"write it in {', '.join(most)} or {last}")
     return best
 
 
 def _han(language: Language) -> bool:
     """Whether a language is written in Chinese characters."""
     return "characters" in lexicon(language).traits
-
-
-def _read() -> str:
-    """Return the names of the languages that are read."""
-    *most, last = sorted(lexicon(language).name for language in LANGUAGES)
-    return f"{', '.join(most)} or {last}"
-
-
-def _quote_prompt(prompt: str, why: str) -> str:
-    return f"{why}: {' '.join(prompt.split())[:60]!r}"
 
 
 def _score(language: Language, texts: list[str], *, repaired: bool) -> tuple[float, int, int]:

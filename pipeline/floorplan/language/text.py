@@ -71,13 +71,9 @@ def clean(prompt: str) -> tuple[str, list[int]]:
     return "".join(cleaned), places
 
 
-def split_words(prompt: str) -> list[Word]:
-    """Split a prompt into words, figures and marks; Chinese into single characters."""
-    return list(_words(prompt))
-
-
 @functools.lru_cache(maxsize=16)  # a prompt is read several times: for its language, its furniture, its rooms
-def _words(prompt: str) -> tuple[Word, ...]:
+def split_words(prompt: str) -> tuple[Word, ...]:
+    """Split a prompt into words, figures and marks; Chinese into single characters."""
     text, places = clean(prompt)
     found = []
     for match in characters()["word"].finditer(text):

@@ -103,9 +103,8 @@ def sentences_of(tokens: Sequence[Token]) -> Iterator[list[Token]]:
 def read_words(prompt: str, language: Language) -> Words:
     """Return the words of a prompt, typing errors repaired."""
     lex = lexicon(language)
-    written = split_words(prompt)
-    folded = [fold(w.text) for w in written]
-    written, texts = repair(written, lex.compounds.complete(folded, lex.vocabulary, lex.joins), lex)
+    folded = [fold(w.text) for w in split_words(prompt)]
+    written, texts = repair(split_words(prompt), lex.compounds.complete(folded, lex.vocabulary, lex.joins), lex)
     texts = [lex.tenses.get(t, lex.behind.get(texts[k - 1], {}).get(t, t) if k else t) for k, t in enumerate(texts)]
     return Words(prompt, written, texts, lex)
 

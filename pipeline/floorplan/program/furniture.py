@@ -11,6 +11,7 @@ from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, Ro
 
 LEXICON = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "furniture.yaml"
 TABLES, CHAIRS = ("dining_table", "any_table"), "any_chair"  # at which one eats, and on which
+LAID = frozenset({"rug"})  # what the layout model does not know and finishing lays, where it is wished for in any case
 LEAST_FLOOR = 0.25  # [m2] of floor that a piece takes in the mean, lamps and wall units among them
 CROWDED = 0.9  # share of a room's floor that pieces may take at most
 SLACK = 1.1  # areas may turn out this much larger than their target
@@ -31,7 +32,12 @@ def members(selector: str) -> tuple[str, ...]:
     groups: Mapping[str, list[str]] = lexicon()["groups"]
     if selector in groups:
         return tuple(groups[selector])
-    return (selector,) if selector in taxonomy.load().names else ()
+    return (selector,) if selector in LAID or selector in taxonomy.load().names else ()
+
+
+def arranged(wish: Furniture) -> tuple[Things, ...]:
+    """Return the wishes for things that the layout model arranges: not for what is laid when it is done."""
+    return tuple(c for c in wish.counts if c.category not in LAID)
 
 
 def matching_categories(things: Things, kind: str) -> tuple[str, ...]:
@@ -191,7 +197,7 @@ def _sums(room: RoomReq, wish: Furniture, here: str) -> Iterable[tuple[str, str,
 def least_pieces(wish: Furniture) -> int:
     """Return how many pieces the wishes name at least; a thing of a narrow category also counts for a group around it."""
     total = 0
-    for things in wish.counts:
+    for things in arranged(wish):
         inner = sum(c.min for c in wish.counts if c is not things and set(members(c.category)) < set(members(things.category)))
         total += max(things.min - inner, 0)
     return max(total, wish.openable or 0)

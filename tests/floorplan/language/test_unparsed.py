@@ -54,7 +54,7 @@ def test_children_who_share_a_room_have_their_beds(prompt):
         ("Ein Schlafzimmer mit Sauna, eine Küche.", {"Sauna"}),
         ("Un salón con chimenea y un dormitorio.", {"chimenea"}),
         ("A bedroom with a view, a kitchen on the left, a laundry chute.", {"view", "on the left", "laundry chute"}),
-        ("Cocina con vistas al mar, un dormitorio al fondo.", {"con vistas al", "al fondo"}),
+        ("Cocina con vistas al mar, un dormitorio al fondo.", {"con vistas al mar", "al fondo"}),
         ("客厅在左边,厨房有岛台,一间卧室", {"左边", "岛台"}),
     ],
 )
