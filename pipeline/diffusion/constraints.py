@@ -14,6 +14,7 @@ from pipeline.diffusion.floor import KINDS
 from pipeline.diffusion.relations import Boxes
 
 CLEARANCE = 0.45  # [m] kept free at a doorway whose leaf does not turn into the room
+DEEP = 0.04  # [m] from which depth on a push grows no further: squares would share an overlap out along a row that is too full
 LEAF_HEIGHT = 2.0  # [m] a door leaf and a person need that much
 EIGHT = ((-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (0, 1), (-1, 0), (1, 0))  # corners and side middles, in halves of the sides
 
@@ -121,13 +122,14 @@ def outside(prisms: Prisms, rooms: RoomBatch, owner: Tensor) -> Tensor:
     return torch.zeros_like(prisms.low).index_add(0, thing, squared / 2)
 
 
-def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch) -> Tensor:
+def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch, tucked: Tensor | None = None) -> Tensor:
     """Return phi_articoll (B,) of B rooms [m2]: how deep bodies and what their joints sweep reach into each other.
 
     Paper eq. articoll sums IoU(b'_i, b_j) over ordered pairs, b' the extended state. Here b' is the body and, per joint,
     the box that it really sweeps (`sweeps` (B, N, K, 2, 3), None for bodies alone); in place of the IoU stands half the
-    square of the depth (see `overlap`), whose descent is the depth itself, along the shortest way out. Doorways are
-    obstacles too, and so is what lies outside the room. `occupied` (B, N) selects slots.
+    square of the depth (see `overlap`), whose descent is the depth itself, DEEP at most, along the shortest way out. Doorways are
+    obstacles too, and so is what lies outside the room. `occupied` (B, N) selects slots, `tucked` (B, N, N) pairs whose bodies may
+    share a place: chairs stand under tables.
 
     Most slots are empty and most things open nothing: the pairs that are there are listed, and only these are computed.
     """
@@ -137,7 +139,7 @@ def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None,
     things, mates = [_to_rows(body), _to_rows(doors)], occupied[:, :, None] & occupied[:, None]
     own, door = _numbers(occupied, 0), _numbers(there, first_door)
     pairs = [
-        _select_pairs(mates.triu(1), own[:, :, None], own[:, None]),
+        _select_pairs((mates if tucked is None else mates & ~tucked).triu(1), own[:, :, None], own[:, None]),
         _select_pairs(occupied[:, :, None] & there[:, None], own[:, :, None], door[:, None]),
     ]
     if sweeps is not None:
@@ -156,7 +158,7 @@ def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None,
     reach = (a.half**2).sum(-1).sqrt() + (b.half**2).sum(-1).sqrt()
     meet = torch.nonzero(((b.centre - a.centre) ** 2).sum(-1) < reach**2)[:, 0]
     depth = overlap(_from_rows(listed[left[meet]]), _from_rows(listed[right[meet]]))
-    phi = torch.zeros_like(body.low[:, 0]).index_add(0, owner[meet], depth**2 / 2)
+    phi = torch.zeros_like(body.low[:, 0]).index_add(0, owner[meet], torch.where(depth < DEEP, depth**2 / 2, DEEP * (depth - DEEP / 2)))
     standing = torch.nonzero(occupied.flatten())[:, 0]
     phi = phi.index_add(0, standing // slots, outside(_from_rows(listed[standing]), rooms, standing // slots) / 2)
     if sweeps is None:

@@ -22,12 +22,13 @@ from pipeline.diffusion.settings import SampleSettings
 
 @dataclass(frozen=True, slots=True)
 class Guidance:
-    """What guides a batch: the rooms, their classes (B, N), the library, the classes that open (C + 1,)."""
+    """What guides a batch: the rooms, their classes (B, N), the library, the classes that open (C + 1,), pairs that may share a place (B, N, N)."""
 
     rooms: RoomBatch
     classes: Tensor
     library: Library | None
     opens: Tensor
+    tucked: Tensor
     settings: SampleSettings
 
     def step(self, codec: Codec, x0: Tensor, level: float) -> Tensor:
@@ -45,7 +46,7 @@ class Guidance:
             if s.articulation == "heuristic":
                 sweeps = heuristic_sweeps(codec.metric(moved[..., : SIZE.stop], self.classes)[..., SIZE], self.opens[self.classes])
             for _ in range(s.articulation_steps):
-                moved[..., : YAW.stop] += articulation_descent(codec, moved, self.classes, sweeps, self.rooms, s)
+                moved[..., : YAW.stop] += articulation_descent(codec, moved, self.classes, sweeps, self.rooms, s, self.tucked)
         return moved
 
     def _looked_up(self, codec: Codec, x0: Tensor) -> tuple[Tensor, Tensor | None]:
@@ -59,11 +60,13 @@ class Guidance:
         return torch.from_numpy(placed).to(x0), torch.from_numpy(sweeps).to(x0)
 
 
-def articulation_descent(codec: Codec, x0: Tensor, classes: Tensor, sweeps: Tensor | None, rooms: RoomBatch, s: SampleSettings) -> Tensor:
+def articulation_descent(
+    codec: Codec, x0: Tensor, classes: Tensor, sweeps: Tensor | None, rooms: RoomBatch, s: SampleSettings, tucked: Tensor | None = None
+) -> Tensor:
     """Return the step (B, N, 8) down phi_articoll: position x, y and yaw move, size and height stay."""
     metric = codec.metric(x0[..., : YAW.stop], classes).detach().requires_grad_()
     with torch.enable_grad():
-        phi = articulated_collision(boxes_of(metric), classes < codec.classes, sweeps, rooms)
+        phi = articulated_collision(boxes_of(metric), classes < codec.classes, sweeps, rooms, tucked)
         (gradient,) = torch.autograd.grad(phi.sum(), metric)
     step = torch.zeros_like(metric)
     move = -s.articulation_scale * gradient[..., :2]

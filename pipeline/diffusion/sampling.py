@@ -120,7 +120,9 @@ class Sampler:
         device = classes.device
         rooms = rooms.to(device)
         code, ones = self.net.floor_code(rooms, classes), torch.ones(len(keys), device=device)
-        guidance = Guidance(rooms, classes, self.library, openable_classes(self.header.norm.classes).to(device), self.settings)
+        names = self.header.norm.classes
+        opens, tucks = openable_classes(names).to(device), tuck_roles(names).to(device)[classes]
+        guidance = Guidance(rooms, classes, self.library, opens, tucks[:, :, None] + tucks[:, None] == 3, self.settings)
 
         before: Tensor | None = None
 
@@ -148,6 +150,12 @@ class Sampler:
         if unknown:
             raise ContentError(f"the layout model knows no room type {unknown[0]!r}", f"use one of {', '.join(self.header.layouts)}")
         return [self.header.layouts.index(r.layout_type) for r in rooms]
+
+
+def tuck_roles(classes: Sequence[str]) -> Tensor:
+    """Return by class (C + 1,), the last one empty: 1 for what stands under tables, 2 for tables, 0 for the rest."""
+    known = taxonomy.load().categories
+    return torch.tensor([{"seat": 1, "table": 2}.get(known[name].tuck or "", 0) for name in classes] + [0])
 
 
 def openable_classes(classes: Sequence[str]) -> Tensor:

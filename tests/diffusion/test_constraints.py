@@ -10,6 +10,7 @@ from pipeline import seeds
 from pipeline.diffusion.batch import room_batch
 from pipeline.diffusion.codec import Codec
 from pipeline.diffusion.constraints import (
+    DEEP,
     Prisms,
     articulated_collision,
     bodies,
@@ -115,6 +116,11 @@ def test_the_heuristic_grows_a_third_of_the_depth_to_the_front():
     assert torch.isnan(box[0, 1]).all()
 
 
+def cost(depth):
+    """Half the square of a depth, whose slope ends at DEEP."""
+    return depth**2 / 2 if depth < DEEP else DEEP * (depth - DEEP / 2)
+
+
 def test_a_joint_s_sweep_counts_although_the_bodies_are_apart():
     _, rooms = room()
     boxes, both = body([[0, 0.4, 1.0, 0.5, 0.0], [0, -0.5, 0.8, 0.5, 0.0]]), torch.ones(1, 2, dtype=torch.bool)
@@ -122,7 +128,7 @@ def test_a_joint_s_sweep_counts_although_the_bodies_are_apart():
     assert float(articulated_collision(boxes, both, sweeps, rooms)) == 0
     sweeps[0, 0, 0] = torch.tensor([[-0.5, -0.7, 0.1], [0.5, -0.25, 0.9]])  # a drawer that comes out at the front, -y
     blocked = float(articulated_collision(boxes, both, sweeps, rooms))
-    assert blocked == pytest.approx(0.5 * 0.05**2, rel=1e-3)
+    assert blocked == pytest.approx(cost(0.05), rel=1e-3)
     turned = body([[0, 0.4, 1.0, 0.5, math.pi], [0, -0.5, 0.8, 0.5, 0.0]])
     assert float(articulated_collision(turned, both, sweeps, rooms)) == 0
     assert float(articulated_collision(boxes, torch.tensor([[True, False]]), sweeps, rooms)) == 0
@@ -150,7 +156,7 @@ def test_the_penalty_is_the_sum_over_pairs():
         depths += [overlap(arm, things[j]) for (i, _), arm in arms.items() for j in held if i != j]
         depths += [overlap(p, door) for p in (*things.values(), *arms.values()) for door in doors]
         beyond = [0.5 * _beyond(p, single) for p in things.values()] + [0.25 * _beyond(p, single) for p in arms.values()]
-        assert float(together[n]) == pytest.approx(float(sum(d**2 / 2 for d in depths)) + sum(beyond), rel=1e-5, abs=1e-6)
+        assert float(together[n]) == pytest.approx(sum(cost(float(d)) for d in depths) + sum(beyond), rel=1e-5, abs=1e-6)
     assert together.min() > 0
 
 
@@ -182,7 +188,7 @@ def test_descending_lowers_the_penalty_where_the_printed_sign_climbs(norm):
         climbed = x.clone()
         climbed[..., :8] -= 0.1 * step
         assert phi(climbed) >= start
-        for _ in range(12):
+        for _ in range(24):  # a push is DEEP long at most, so clutter takes its time
             x = x.clone()
             x[..., :8] += articulation_descent(codec, x, classes, sweeps, rooms, settings)
         assert torch.equal(x[..., 2:6], codec.normalise(metric, classes)[..., 2:6])  # heights and sizes stay
@@ -226,3 +232,34 @@ def test_units_of_a_run_are_in_nobodys_way():
         sweeps = torch.full((1, 2, 1, 2, 3), torch.nan)
         sweeps[0, 0] = torch.from_numpy(box)
         assert (float(articulated_collision(boxes, there, sweeps, rooms)) < 1e-12) == free
+
+
+def descended(norm, rows, tucked=None, steps=40):
+    """Where bodies (x, y, w, d, yaw) of one room stand after some descents."""
+    codec, (_, rooms) = Codec(norm), room()
+    metric = torch.zeros(1, len(rows), 40)
+    metric[0, :, :2] = torch.tensor(rows)[:, :2]
+    metric[0, :, 3:5] = torch.tensor(rows)[:, 2:4]
+    metric[..., 5] = metric[..., 6] = 1.0
+    classes = torch.zeros(1, len(rows), dtype=torch.long)
+    x = codec.normalise(metric, classes)
+    for _ in range(steps):
+        x[..., :8] += articulation_descent(codec, x, classes, None, rooms, SampleSettings(), tucked)
+    return codec.metric(x, classes)[0, :, :2]
+
+
+def test_an_overlap_is_not_shared_out_along_a_row(norm):
+    # Three units side by side, the right ones 20 cm into each other: those part, and the left pair stays as it is but for a hair.
+    place = descended(norm, [(-0.6, 0.0, 0.6, 0.6), (0.0, 0.0, 0.6, 0.6), (0.4, 0.0, 0.6, 0.6)])
+    assert float(place[2, 0] - place[1, 0]) == pytest.approx(0.6, abs=0.01)
+    assert float(place[1, 0] - place[0, 0]) == pytest.approx(0.6, abs=0.01)
+    in_one_step = descended(norm, [(0.0, 0.0, 0.6, 0.6), (0.4, 0.0, 0.6, 0.6)], steps=1)
+    assert float(in_one_step[1, 0] - in_one_step[0, 0]) == pytest.approx(0.4 + 2 * 0.5 * DEEP, abs=1e-4)
+
+
+def test_chairs_may_stand_under_tables(norm):
+    rows = [(0.0, 0.0, 1.4, 0.8), (0.0, 0.5, 0.45, 0.5)]
+    tucked = torch.ones(1, 2, 2, dtype=torch.bool)
+    assert torch.allclose(descended(norm, rows, tucked), torch.tensor(rows)[:, :2], atol=1e-5)
+    table, chair = descended(norm, rows)[:, 1].tolist()
+    assert chair - table == pytest.approx(0.65, abs=0.01)
