@@ -168,10 +168,10 @@ def _before(sentence: list[Token], k: int, *breaks: str) -> Token | None:
 
 
 def _is_listed_again(sentence: list[Token], k: int) -> bool:
-    """Whether a bare noun is the next item of a list that has it already: "bedroom 12 m2, bedroom 10 m2" are two."""
+    """Whether a bare noun is the next item of a list that has it already: "bedroom 12 m2, bedroom 10 m2" are two; those of a role by their sizes."""
     first, here = _before(sentence, k, "cue", "colon", "verb"), sentence[k]
     items = [here] if first is None else [first, here]
-    bare = not any(e.det or e.number or e.plural or e.role for e in items)
+    bare = not any(e.det or e.number or e.plural or (e.role and not e.amounts) for e in items)
     ends = k + 1 == len(sentence) or sentence[k + 1].kind not in {"cue", "verb"}  # of "..., bathroom next to it" it is the subject
     return first is not None and bare and ends and here.type not in ALONE and sentence[k - 1].kind in {"comma", "join"}
 
@@ -211,7 +211,7 @@ def _resolve_phrase(state: Reading, sentence: list[Token], k: int, level: int | 
     if "other" in e.det:
         return _others(state, sentence, k, role, level)
     known = same and not _is_listed_again(sentence, k)
-    rooms = _by_role(state, sentence, k, role, level) if role else _known_rooms(state, sentence, k, level) if known else []
+    rooms = (_by_role if role else _known_rooms)(state, sentence, k, level) if known or role and not same else []
     return rooms or _new(state, e, int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1)), role, level)
 
 
@@ -255,9 +255,9 @@ def _within(state: Reading, e: Token, count: float) -> None:
         raise ImpossibleError(what, advice, [*words, state.words.quote(max(e.first - 1, 0), e.last, "rooms")])
 
 
-def _by_role(state: Reading, sentence: list[Token], k: int, role: str, level: int | None) -> list[Named]:
+def _by_role(state: Reading, sentence: list[Token], k: int, level: int | None) -> list[Named]:
     """Return the rooms of a role; one that was only counted may take it."""
-    e, same, many = sentence[k], state.inventory.of(sentence[k].type), _many(sentence[k])
+    e, same, many, role = sentence[k], state.inventory.of(sentence[k].type), _many(sentence[k]), sentence[k].role
     rooms = [r for r in same if r.role == role]
     if rooms and (many or not e.introduces):
         return rooms if many else rooms[:1]
