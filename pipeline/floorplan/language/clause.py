@@ -320,7 +320,7 @@ def level(c: Clause, k: int, e: Token) -> None:
     start = max((j for j, x in enumerate(c.sentence[:k]) if x.kind == "comma"), default=k)
     part = ids_of(x for x in c.sentence[start:k] if x.kind == "np")
     closes = c.forward and part and (ahead is None or ahead.kind == "comma")  # "upstairs two bedrooms, the kitchen downstairs"
-    if not closes and (c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon")):
+    if not closes and (c.forward or heads(c.sentence, k)):
         c.forward, c.level, c.run = True, int(e.value), []
         return
     owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"
