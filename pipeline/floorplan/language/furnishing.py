@@ -253,7 +253,7 @@ class Scan:
         begin = self.stops[bisect.bisect_left(self.stops, first) - 1] + 1
         left = next((j for j in range(first - 1, max(begin, first - NEAR) - 1, -1) if self.text(j) in COMMAS), max(begin, first - NEAR) - 1)
         right = next((j for j in range(last, last + NEAR - 1) if self.text(j) in COMMAS), last + NEAR - 1)
-        home = any(self.length(j, "home") for j in range(left + 1, right))
+        home = any(self.length(j, "home") and self.words[j].start not in self.rooms for j in range(left + 1, right))  # "cada habitación"
         home = home or (
             kind == "walkable"
             and any(self.length(j, "dwelling") and w.start in self.rooms for j, w in enumerate(self.words[first:last], first))

@@ -207,7 +207,7 @@ def _relabel(tokens: Sequence[Token], words: Words) -> list[Token]:
         if token.kind == "level" and ground:
             shifted = (n for n in (1, 2) if any(token.text.endswith(t) for t in lex.sign(f"floor_{n}")))
             relabelled[k] = replace(token, value=str(next(shifted, token.value)))
-        elif token.kind == "every" and any(m.kind == "room" and m.text == token.text.rsplit(" ", 1)[-1] for m in tokens[:k]):
+        elif token.kind == "every" and any(m.kind == "room" and m.text.startswith(token.text.rsplit(" ", 1)[-1]) for m in tokens[:k]):
             relabelled[k] = replace(token, kind="room", value="bedroom", plural=True)  # "todas las habitaciones": so many were counted
         elif token.kind == "home" and k and bedrooms and token.text in lex.sign("study"):
             relabelled[k] = replace(token, kind="room", value="office")
