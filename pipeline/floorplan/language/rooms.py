@@ -261,7 +261,9 @@ def _by_role(state: Reading, sentence: list[Token], k: int, level: int | None) -
     rooms = [r for r in same if r.role == role]
     if rooms and (many or not e.introduces):
         return rooms if many else rooms[:1]
+    here = next((int(x.value) for x in sentence[k:] if x.kind == "level"), level)  # "a bedroom downstairs. The master goes upstairs"
     plain = [r for r in same if not r.role and r.id not in state.inventory.belongings and not _later(r, e.first)]
+    plain = [r for r in plain if here is None or r.level in {None, here}]
     if e.type == "bathroom":
         bare = "bare_nouns" in state.words.lexicon.traits and not e.det and not e.number
         slots = [r for r in same if r.open_slot] or (plain if len(plain) == 1 and (e.definite or bare) else [])
@@ -276,7 +278,7 @@ def _by_role(state: Reading, sentence: list[Token], k: int, level: int | None) -
     ]
     if slots:
         return [close(r, role, e.text) for r in slots[: int(e.number or len(slots)) if many else 1]]
-    return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite else []
+    return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite and not plain[0].extra else []
 
 
 def _later(room: Named, place: int) -> bool:
