@@ -173,23 +173,27 @@ class Scan:
             return True  # "a shower instead of a bathtub"
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
-            between = self.prompt[self.words[at].end : self.words[k].start]
-            led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
+            between, apart = self.prompt[self.words[at].end : self.words[k].start], name in lexicon()["apart"]
+            led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k) if not apart or "," not in self.prompt[self.words[j].end : self.words[k].start])
             if led or between.rfind("(") > between.rfind(")") or (":" in between.partition(",")[0] and not any(map(str.isdigit, between))):
                 return True
         listed = name in lexicon()["listed"] and self._listed(k, size)
-        return listed or (bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4)))
+        at = k + size  # "a desk and a wardrobe in the hall"
+        while step := self.length(at, "and", "one", "article", "size") or next((n for n, kind, *_ in self._here(at) if kind == "name"), 0):
+            at += step
+        return listed or (bool(self.length(at, "in")) and any(owner(at + d) for d in (1, 2, 3)))
 
     def _listed(self, k: int, size: int) -> bool:
         """Whether the thing at word k stands behind another in a list, or heads one: "a desk and a wardrobe"."""
         small = ("one", "article", "size", "look")
-        at = next(j for j in range(k - 1, -2, -1) if not self.length(j, *small) and self.number(j)[1] is None)
+        figures = {j for j in range(max(k - FAR, 0), min(k + FAR, len(self.words))) if self.words[j].start in self.numbers}
+        at = next(j for j in range(k - 1, -2, -1) if not self.length(j, *small) and j not in figures)
         if self.length(at, "and"):
             while self.length(at - 1, "and"):
                 at -= 1
             return any(self.phrase(j, "name")[0] == at - j for j in range(max(at - 4, 0), at))
         at = k + size + (self.length(k + size, "and") if at < k - 1 else 0)
-        while at > k + size and (step := self.length(at, *small) or self.number(at)[0]):
+        while at > k + size and (step := self.length(at, *small) or at in figures):
             at += step
         return at > k + size and any(kind == "name" and not owned for _, kind, _, owned in self._here(at))
 
