@@ -174,7 +174,11 @@ class Scan:
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
             between, apart = self.prompt[self.words[at].end : self.words[k].start], name in lexicon()["apart"]
-            led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k) if not apart or "," not in self.prompt[self.words[j].end : self.words[k].start])
+            led = self.length(at + 1, "none") or any(
+                self.length(j, "with")
+                for j in range(at + 1, k)
+                if not apart or "," not in self.prompt[self.words[j].end : self.words[k].start]
+            )
             if led or between.rfind("(") > between.rfind(")") or (":" in between.partition(",")[0] and not any(map(str.isdigit, between))):
                 return True
         listed = name in lexicon()["listed"] and self._listed(k, size)

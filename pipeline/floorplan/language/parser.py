@@ -23,7 +23,7 @@ from pipeline.floorplan.language.tokens import Token, amounts, read_words, segme
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
 from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence, FloorProgram, Furniture, Span, Things
-from pipeline.floorplan.program.furniture import impossible, natural
+from pipeline.floorplan.program.furniture import impossible, merge_wishes, natural
 
 LONGEST = 20_000  # characters
 MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
@@ -262,8 +262,15 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
             field = f"{where}.{claim.name if claim.kind == 'count' else claim.kind}"
             evidence.append(Evidence(start=claim.start, end=claim.end, text=prompt[claim.start : claim.end], field=field))
     wished = {room: combine_claims(some, prompt, room or "the home") for room, some in by_room.items()}
-    furnished = (r.model_copy(update={"furniture": wished.get(r.id, r.furniture)}) for r in program.rooms)
     own = wished.get("", program.furniture)
+    cooks = any(
+        c.min and natural(c.category) == ("kitchen",) for c in own.counts
+    )  # a studio's one room holds no refrigerator: a kitchen does
+    functions = {r.id: tuple(f for f in r.functions if not (cooks and r.type == "studio_room" and f == "cooking")) for r in program.rooms}
+    furnished = (
+        r.model_copy(update={"furniture": merge_wishes(r.furniture, wished.get(r.id, Furniture())), "functions": functions[r.id]})
+        for r in program.rooms
+    )
     return program.model_copy(update={"rooms": tuple(furnished), "furniture": own, "evidence": (*program.evidence, *evidence)})
 
 

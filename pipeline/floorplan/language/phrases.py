@@ -153,7 +153,7 @@ def _phrase(token: Token, pre: Sequence[Token], compound: bool, lex: Lexicon) ->
     """Put a noun phrase together from its head and what stands in front of it."""
     kind, _, role = token.value.partition("/") if token.kind == "room" else ("bedroom", "", token.value)
     own: dict[str, Any] = {"det": set(), "adjectives": set(), "amounts": [], "taken": list(pre)}
-    own |= {"suite": token.kind == "suite", "functions": {"dining"} if role == "diner" else set()}
+    own |= {"suite": token.kind == "suite", "functions": {"diner": {"dining"}, "shower": {"shower"}}.get(role, set())}
     phrase = replace(token, kind="np", type=kind, role=role if role in ROLES else "", number=0.0, compound=compound, **own)
     for part in pre:
         if part.kind == "num":

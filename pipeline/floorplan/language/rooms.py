@@ -211,7 +211,7 @@ def _resolve_phrase(state: Reading, sentence: list[Token], k: int, level: int | 
     if "other" in e.det:
         return _others(state, sentence, k, role, level)
     known = same and not _is_listed_again(sentence, k)
-    rooms = (_by_role if role else _known_rooms)(state, sentence, k, level) if known or role and not same else []
+    rooms = (_by_role if role else _known_rooms)(state, sentence, k, level) if known or (role and not same) else []
     return rooms or _new(state, e, int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1)), role, level)
 
 
