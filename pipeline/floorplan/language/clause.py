@@ -185,9 +185,7 @@ class Clause:
             return self.subject
         door = e.value in {"door", "leads"} and self.says(e, "with") and not last.plural  # "a kitchen and a hall with a door to ..."
         finite = any(self.says(x, "finite") for x in (*self.sentence[self.place(last) + 1 : k], e))  # of more than one
-        joined = self._coordinated() and (
-            finite or not self.run[-2].introduces
-        )  # but "a hall, and the bath must", "a garage and the bath must"
+        joined = self._coordinated() and (finite or not self.run[-2].introduces)  # no "a hall and the bath must"
         new = last.definite and not joined and not any(x.definite for x in self.run[:-1])
         alone = new or self.relative or (door and not self.verb) or (self.single and not last.plural) or not self.coordinate()
         verbal = self.verb or e.value in {"leads", "away", "apart", "wall"} or finite

@@ -173,12 +173,9 @@ class Scan:
             return True  # "a shower instead of a bathtub"
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
-            between, apart = self.prompt[self.words[at].end : self.words[k].start], name in lexicon()["apart"]
-            led = self.length(at + 1, "none") or any(
-                self.length(j, "with")
-                for j in range(at + 1, k)
-                if not apart or "," not in self.prompt[self.words[j].end : self.words[k].start]
-            )
+            between = self.prompt[self.words[at].end : self.words[k].start]
+            led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
+            led = led and not ("," in between and name in lexicon()["apart"])
             if led or between.rfind("(") > between.rfind(")") or (":" in between.partition(",")[0] and not any(map(str.isdigit, between))):
                 return True
         listed = name in lexicon()["listed"] and self._listed(k, size)
@@ -262,10 +259,8 @@ class Scan:
         left = next((j for j in range(first - 1, max(begin, first - NEAR) - 1, -1) if self.text(j) in COMMAS), max(begin, first - NEAR) - 1)
         right = next((j for j in range(last, last + NEAR - 1) if self.text(j) in COMMAS), last + NEAR - 1)
         home = any(self.length(j, "home") and self.words[j].start not in self.rooms for j in range(left + 1, right))  # "cada habitación"
-        home = home or (
-            kind == "walkable"
-            and any(self.length(j, "dwelling") and w.start in self.rooms for j, w in enumerate(self.words[first:last], first))
-        )
+        inside = range(first, last) if kind == "walkable" else ()
+        home = home or any(self.length(j, "dwelling") and self.words[j].start in self.rooms for j in inside)
         start, end = self.words[first].start, self.words[last - 1].end
         self.claims.append(Claim(kind, start, end, name, least, most, value, home, self.length(last, "in") > self.length(last, "none")))
         return last - first

@@ -78,9 +78,8 @@ def _elements(tokens: list[Token], lex: Lexicon) -> list[Token]:
             continue
         if token.kind == "pron" and _heads_phrase(tokens, k + 1) and tokens[k + 1].value != "bathroom/ensuite":  # "one bath", "the others"
             determines = {"rest": "other", "both": "both", "group": "all"}.get(token.value, "definite")
-            token = (
-                replace(token, kind="num", value="", number=1.0) if token.value == "one" else replace(token, kind="det", value=determines)
-            )
+            one = token.value == "one"
+            token = replace(token, kind="num", value="", number=1.0) if one else replace(token, kind="det", value=determines)
         behind = bool(elements) and elements[-1].kind in {"np", "home"} and not pre and token.kind == "amount"
         if token.kind == "home":
             elements += [*_loose([p for p in pre if p.kind != "amount"], None, lex), _plain(token, lex)]
@@ -184,6 +183,7 @@ def _behind(tokens: Sequence[Token], k: int, phrase: Token, postposed: bool, lex
     adjectives = "adjectives_behind" in lex.traits
     while k < len(tokens):
         token, ahead = tokens[k], tokens[k + 1] if k + 1 < len(tokens) else None
+        leads = token.kind in {"colon", "times"} and ahead is not None and ahead.kind == "num"
         determines = token.kind == "det" and token.value in BEHIND and (adjectives or not _heads_phrase(tokens, k + 1))
         if determines or (token.kind == "adj" and adjectives):
             (phrase.det if token.kind == "det" else phrase.adjectives).add(token.value)
@@ -198,11 +198,7 @@ def _behind(tokens: Sequence[Token], k: int, phrase: Token, postposed: bool, lex
             else:
                 phrase.index = int(token.number)
             k += counted
-        elif (
-            token.kind != "clf"
-            and token.text not in lex.sign("very")
-            and not (token.kind in {"colon", "times"} and ahead is not None and ahead.kind == "num")
-        ):
+        elif token.kind != "clf" and token.text not in lex.sign("very") and not leads:
             return k
         phrase.taken.append(token)
         k += 1

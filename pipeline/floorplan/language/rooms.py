@@ -269,13 +269,9 @@ def _by_role(state: Reading, sentence: list[Token], k: int, level: int | None) -
         slots = [r for r in same if r.open_slot] or (plain if len(plain) == 1 and (e.definite or bare) else [])
         return [close(slots[0], role, e.text)] if slots and role not in {"ensuite", "primary"} else []
     listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")  # "two bedrooms and a guest room": none of the two
-    slots = [
-        r
-        for r in plain
-        if r.open_slot
-        and (e.definite or r.whole or _is_spelt_out(sentence, k, r) or listed is None or r.id not in listed.ids)
-        and (r.level in {None, level} or (e.definite and level is None))  # counted on another storey: others
-    ]
+    others = listed.ids if listed is not None and not e.definite else ()
+    free = [r for r in plain if r.open_slot and (r.level in {None, level} or (e.definite and level is None))]  # those of this storey
+    slots = [r for r in free if r.whole or r.id not in others or _is_spelt_out(sentence, k, r)]
     if slots:
         return [close(r, role, e.text) for r in slots[: int(e.number or len(slots)) if many else 1]]
     return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite and not plain[0].extra else []

@@ -180,12 +180,8 @@ def _number(tokens: Sequence[Token], k: int, written_by_tens: bool) -> tuple[int
         joined = end > k and (tokens[end].kind, tokens[end].value) == ("join", "and")
         word = tokens[end + joined] if end + joined < len(tokens) else None
         turned = word is not None and 0 < current < 10 and 20 <= word.number < 100  # "fünfundsiebzig"
-        if (
-            word is None
-            or (joined and not (turned or current >= 20 or (total >= 100 and not current)))
-            or word.kind != "num"
-            or word.value == "figure"
-        ):
+        goes_on = not joined or turned or current >= 20 or (total >= 100 and not current)
+        if word is None or not goes_on or word.kind != "num" or word.value == "figure":
             break
         if word.number >= 100:
             total, current = total + max(current, 1.0) * word.number, 0.0
@@ -202,9 +198,8 @@ def _number(tokens: Sequence[Token], k: int, written_by_tens: bool) -> tuple[int
 def _relabel(tokens: Sequence[Token], words: Words) -> list[Token]:
     """Settle what depends on words far off: floors counted from a ground floor, studies where there are bedrooms, how many "each child" are."""
     lex, relabelled = words.lexicon, list(tokens)
-    counts = [m for m in tokens if m.kind != "clf"]
-    kids = [a for a, b in itertools.pairwise(counts) if b.value == "child" or b.text in lex.sign("child")]
-    children = next((a.number for a in kids if a.kind == "num"), 0.0)
+    pairs = itertools.pairwise(m for m in tokens if m.kind != "clf")
+    kids = [a for a, b in pairs if b.value == "child" or b.text in lex.sign("child")]
     ground = "floors_from_one" in lex.traits and any(m.kind == "level" and lex.sign("ground") & set(m.text.split()) for m in tokens)
     bedrooms = any(m.kind == "room" and m.value.startswith("bedroom") and m.value != "bedroom/guest" for m in tokens)
     for k, token in enumerate(tokens):
@@ -212,7 +207,7 @@ def _relabel(tokens: Sequence[Token], words: Words) -> list[Token]:
             shifted = (n for n in (1, 2) if any(token.text.endswith(t) for t in lex.sign(f"floor_{n}")))
             relabelled[k] = replace(token, value=str(next(shifted, token.value)))
         elif token.value == "each" and any(token is a for a in kids):
-            relabelled[k] = replace(token, number=children)
+            relabelled[k] = replace(token, number=next((a.number for a in kids if a.kind == "num"), 0.0))
         elif token.kind == "every" and any(m.kind == "room" and m.text.startswith(token.text.rsplit(" ", 1)[-1]) for m in tokens[:k]):
             relabelled[k] = replace(token, kind="room", value="bedroom", plural=True)  # "todas las habitaciones": so many were counted
         elif token.kind == "home" and k and bedrooms and token.text in lex.sign("study"):
