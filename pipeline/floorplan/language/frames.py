@@ -194,9 +194,8 @@ def list_ends(tokens: Sequence[Token], k: int, names: Sequence[frozenset[str]]) 
     while end := phrase(tokens, k):
         ends.append(end)
         k = end
-        while k < min(end + 4, len(tokens)) and (
-            tokens[k].kind in SEPARATORS or (k > end and names[k] & TOWARDS and not phrase(tokens, k))
-        ):
+        last = min(end + 4, len(tokens))
+        while k < last and (tokens[k].kind in SEPARATORS or (k > end and names[k] & TOWARDS and not phrase(tokens, k))):
             k += 1
         if k == end:
             break

@@ -172,17 +172,20 @@ class Scan:
         if any(self.length(i, "none") for j in alone for i in range(min(j, k) - 2, max(j, k))):
             return True  # "a shower instead of a bathtub"
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
-        if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
-            between = self.prompt[self.words[at].end : self.words[k].start]
+        if at is not None and (name not in lexicon()["apart"] or self._past(at + 1) >= k):
+            between = self.prompt[self.words[at].end : self.words[k].start]  # "a bedroom, a bathroom and a wardrobe" are three
             led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
-            led = led and not ("," in between and name in lexicon()["apart"])
             if led or between.rfind("(") > between.rfind(")") or (":" in between.partition(",")[0] and not any(map(str.isdigit, between))):
                 return True
         listed = name in lexicon()["listed"] and self._listed(k, size)
-        at = k + size  # "a desk and a wardrobe in the hall"
-        while step := self.length(at, "and", "one", "article", "size") or next((n for n, kind, *_ in self._here(at) if kind == "name"), 0):
-            at += step
+        at = self._past(k + size)  # "a desk and a wardrobe in the hall"
         return listed or (bool(self.length(at, "in")) and any(owner(at + d) for d in (1, 2, 3)))
+
+    def _past(self, k: int) -> int:
+        """Return where the things, and what joins them, end that begin at word k."""
+        while step := self.length(k, "with", "and", "one") or next((n for n, kind, *_ in self._here(k) if kind == "name"), 0):
+            k += step
+        return k
 
     def _listed(self, k: int, size: int) -> bool:
         """Whether the thing at word k stands behind another in a list, or heads one: "a desk and a wardrobe"."""

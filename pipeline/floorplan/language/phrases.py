@@ -77,9 +77,8 @@ def _elements(tokens: list[Token], lex: Lexicon) -> list[Token]:
             pre = []
             continue
         if token.kind == "pron" and _heads_phrase(tokens, k + 1) and tokens[k + 1].value != "bathroom/ensuite":  # "one bath", "the others"
-            determines = {"rest": "other", "both": "both", "group": "all"}.get(token.value, "definite")
-            one = token.value == "one"
-            token = replace(token, kind="num", value="", number=1.0) if one else replace(token, kind="det", value=determines)
+            det = {"rest": "other", "both": "both", "group": "all"}.get(token.value, "definite")
+            token = replace(token, kind="num", value="", number=1.0) if token.value == "one" else replace(token, kind="det", value=det)
         behind = bool(elements) and elements[-1].kind in {"np", "home"} and not pre and token.kind == "amount"
         if token.kind == "home":
             elements += [*_loose([p for p in pre if p.kind != "amount"], None, lex), _plain(token, lex)]

@@ -198,8 +198,7 @@ def _number(tokens: Sequence[Token], k: int, written_by_tens: bool) -> tuple[int
 def _relabel(tokens: Sequence[Token], words: Words) -> list[Token]:
     """Settle what depends on words far off: floors counted from a ground floor, studies where there are bedrooms, how many "each child" are."""
     lex, relabelled = words.lexicon, list(tokens)
-    pairs = itertools.pairwise(m for m in tokens if m.kind != "clf")
-    kids = [a for a, b in pairs if b.value == "child" or b.text in lex.sign("child")]
+    kids = [a for a, b in itertools.pairwise(m for m in tokens if m.kind != "clf") if b.value == "child" or b.text in lex.sign("child")]
     ground = "floors_from_one" in lex.traits and any(m.kind == "level" and lex.sign("ground") & set(m.text.split()) for m in tokens)
     bedrooms = any(m.kind == "room" and m.value.startswith("bedroom") and m.value != "bedroom/guest" for m in tokens)
     for k, token in enumerate(tokens):
