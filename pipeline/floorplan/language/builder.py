@@ -77,7 +77,8 @@ def _room(room: Named) -> dict[str, Any]:
         area["target"] = round(DEFAULTS[room.type].area * room.size, 2)
     own = {f: getattr(room, f) for f in ("id", "stated", "type", "level", "exterior_length", "window", "min_width")}
     role = "" if room.role == "ensuite" else room.role
-    return own | {"role": role, "functions": tuple(sorted(room.functions)), "area": area | {"stated": stated}}
+    own["furniture"] = {"counts": [{"category": f, "min": 1} for f in room.functions if f == "shower"]}  # "a shower room"
+    return own | {"role": role, "functions": tuple(sorted(room.functions - {"shower"})), "area": area | {"stated": stated}}
 
 
 # how many rooms

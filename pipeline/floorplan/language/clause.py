@@ -184,9 +184,10 @@ class Clause:
         if one and before is not None and before.kind in LISTING:  # "a guest room with its own bath, away from ..."
             return self.subject
         door = e.value in {"door", "leads"} and self.says(e, "with") and not last.plural  # "a kitchen and a hall with a door to ..."
-        new = last.definite and not self._coordinated() and not any(x.definite for x in self.run[:-1])  # "a hall, and the bath must"
+        finite = any(self.says(x, "finite") for x in (*self.sentence[self.place(last) + 1 : k], e))  # of more than one
+        joined = self._coordinated() and (finite or not self.run[-2].introduces)  # no "a hall and the bath must"
+        new = last.definite and not joined and not any(x.definite for x in self.run[:-1])
         alone = new or self.relative or (door and not self.verb) or (self.single and not last.plural) or not self.coordinate()
-        finite = any(self.says(x, "finite") for x in (*self.sentence[self.place(last) + 1 : k], e))
         verbal = self.verb or e.value in {"leads", "away", "apart", "wall"} or finite
         if alone or not (verbal or e.value == "door"):
             return last.ids
@@ -319,7 +320,7 @@ def level(c: Clause, k: int, e: Token) -> None:
     start = max((j for j, x in enumerate(c.sentence[:k]) if x.kind == "comma"), default=k)
     part = ids_of(x for x in c.sentence[start:k] if x.kind == "np")
     closes = c.forward and part and (ahead is None or ahead.kind == "comma")  # "upstairs two bedrooms, the kitchen downstairs"
-    if not closes and (c.forward or heads(c.sentence, k) or ("*" in c.latest and ahead is not None and ahead.kind == "colon")):
+    if not closes and (c.forward or heads(c.sentence, k)):
         c.forward, c.level, c.run = True, int(e.value), []
         return
     owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"

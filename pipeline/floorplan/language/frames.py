@@ -27,6 +27,7 @@ SKIPPED = {"fill", "ignored", "adverb", "word", "look", "hyphen", "wish"}  # bet
 CLOSERS = ENDS | {"comma", "close", "but", "open", "colon", "bullet", "dash"}
 SEPARATORS = {"comma", "join", "slash"}
 TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of each room of a list: "one to the hall, one to the kitchen"
+TRAILING = {("num", "figure"), ("amount", "area"), ("det", "own")}  # behind a head
 MOST_SKIPPED = 3
 HOMES = {"large": 35.0, "vast": 60.0}  # [m2] from here on an area is no bedroom's, and no living room's
 ROOMY = 8.0  # [m2] a figure behind a room that is an area, and no count or name
@@ -182,9 +183,7 @@ def phrase(tokens: Sequence[Token], k: int) -> int:
     if k >= len(tokens) or tokens[k].kind not in HEADS:
         return 0
     k += 1
-    while k < len(tokens) and (
-        tokens[k].kind in {"post", "clf"} or (tokens[k].kind, tokens[k].value) in {("num", "figure"), ("amount", "area"), ("det", "own")}
-    ):
+    while k < len(tokens) and (tokens[k].kind in {"post", "clf"} or (tokens[k].kind, tokens[k].value) in TRAILING):
         k += 1
     return k
 
@@ -195,9 +194,8 @@ def list_ends(tokens: Sequence[Token], k: int, names: Sequence[frozenset[str]]) 
     while end := phrase(tokens, k):
         ends.append(end)
         k = end
-        while (
-            k < len(tokens) and k - end < 4 and (tokens[k].kind in SEPARATORS or (k > end and names[k] & TOWARDS and not phrase(tokens, k)))
-        ):
+        last = min(end + 4, len(tokens))
+        while k < last and (tokens[k].kind in SEPARATORS or (k > end and names[k] & TOWARDS and not phrase(tokens, k))):
             k += 1
         if k == end:
             break
@@ -298,9 +296,8 @@ def _goes_on(tokens: list[Token], end: int, second: tuple[str, ...], lex: Lexico
     """Whether the second part has an object of its own: "ins Bad geht man über den Flur", "卫生间和洗衣房都不能挨着餐厅"."""
     if set(second) <= lex.sign("way_through"):
         return end < len(tokens) and tokens[end].kind not in BREAKS | {"join"}
-    return (
-        end < len(tokens) and "characters" in lex.traits and tokens[end - 1].kind == "cue" and tokens[end].kind in HEADS | {"num", "zone"}
-    )
+    named = end < len(tokens) and tokens[end].kind in HEADS | {"num", "zone"}
+    return named and "characters" in lex.traits and tokens[end - 1].kind == "cue"
 
 
 def _matches(tokens: list[Token], k: int, wanted: tuple[str, ...], lex: Lexicon) -> int | None:

@@ -172,24 +172,32 @@ class Scan:
         if any(self.length(i, "none") for j in alone for i in range(min(j, k) - 2, max(j, k))):
             return True  # "a shower instead of a bathtub"
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
-        if at is not None:  # "a bedroom with a wardrobe" has one; "a bedroom, a bathroom and a wardrobe" are three rooms
-            between = self.prompt[self.words[at].end : self.words[k].start]
+        if at is not None and (name not in lexicon()["apart"] or self._past(at + 1) >= k):
+            between = self.prompt[self.words[at].end : self.words[k].start]  # "a bedroom, a bathroom and a wardrobe" are three
             led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
             if led or between.rfind("(") > between.rfind(")") or (":" in between.partition(",")[0] and not any(map(str.isdigit, between))):
                 return True
         listed = name in lexicon()["listed"] and self._listed(k, size)
-        return listed or (bool(self.length(k + 1, "in")) and any(owner(k + d) for d in (2, 3, 4)))
+        at = self._past(k + size)  # "a desk and a wardrobe in the hall"
+        return listed or (bool(self.length(at, "in")) and any(owner(at + d) for d in (1, 2, 3)))
+
+    def _past(self, k: int) -> int:
+        """Return where the things, and what joins them, end that begin at word k."""
+        while step := self.length(k, "with", "and", "one") or next((n for n, kind, *_ in self._here(k) if kind == "name"), 0):
+            k += step
+        return k
 
     def _listed(self, k: int, size: int) -> bool:
         """Whether the thing at word k stands behind another in a list, or heads one: "a desk and a wardrobe"."""
         small = ("one", "article", "size", "look")
-        at = next(j for j in range(k - 1, -2, -1) if not self.length(j, *small) and self.number(j)[1] is None)
+        figures = {j for j in range(max(k - FAR, 0), min(k + FAR, len(self.words))) if self.words[j].start in self.numbers}
+        at = next(j for j in range(k - 1, -2, -1) if not self.length(j, *small) and j not in figures)
         if self.length(at, "and"):
             while self.length(at - 1, "and"):
                 at -= 1
             return any(self.phrase(j, "name")[0] == at - j for j in range(max(at - 4, 0), at))
         at = k + size + (self.length(k + size, "and") if at < k - 1 else 0)
-        while at > k + size and (step := self.length(at, *small) or self.number(at)[0]):
+        while at > k + size and (step := self.length(at, *small) or at in figures):
             at += step
         return at > k + size and any(kind == "name" and not owned for _, kind, _, owned in self._here(at))
 
@@ -253,11 +261,9 @@ class Scan:
         begin = self.stops[bisect.bisect_left(self.stops, first) - 1] + 1
         left = next((j for j in range(first - 1, max(begin, first - NEAR) - 1, -1) if self.text(j) in COMMAS), max(begin, first - NEAR) - 1)
         right = next((j for j in range(last, last + NEAR - 1) if self.text(j) in COMMAS), last + NEAR - 1)
-        home = any(self.length(j, "home") for j in range(left + 1, right))
-        home = home or (
-            kind == "walkable"
-            and any(self.length(j, "dwelling") and w.start in self.rooms for j, w in enumerate(self.words[first:last], first))
-        )
+        home = any(self.length(j, "home") and self.words[j].start not in self.rooms for j in range(left + 1, right))  # "cada habitación"
+        inside = range(first, last) if kind == "walkable" else ()
+        home = home or any(self.length(j, "dwelling") and self.words[j].start in self.rooms for j in inside)
         start, end = self.words[first].start, self.words[last - 1].end
         self.claims.append(Claim(kind, start, end, name, least, most, value, home, self.length(last, "in") > self.length(last, "none")))
         return last - first

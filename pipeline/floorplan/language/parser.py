@@ -23,7 +23,7 @@ from pipeline.floorplan.language.tokens import Token, amounts, read_words, segme
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
 from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence, FloorProgram, Furniture, Span, Things
-from pipeline.floorplan.program.furniture import impossible, natural
+from pipeline.floorplan.program.furniture import impossible, merge_wishes, natural
 
 LONGEST = 20_000  # characters
 MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
@@ -154,9 +154,8 @@ def _says(state: Reading, tokens: Sequence[Token], k: int) -> bool:
     dweller = token.kind == "owner" and any(m.text in state.words.lexicon.sign("towards") for m in tokens[max(0, k - 2) : k])
     if dweller or (token.kind, token.value) in {("pron", "it"), ("pron", "one")}:
         return False  # "for my granny: ..." says who lives there
-    if (token.kind, token.value) in {("adj", "closed"), ("adj", "plain")} or (
-        k and token.kind == "size" and tokens[k - 1].kind == "amount"
-    ):
+    sized = k and token.kind == "size" and tokens[k - 1].kind == "amount"
+    if sized or (token.kind, token.value) in {("adj", "closed"), ("adj", "plain")}:
         return False  # what is not open is apart anyway; "20 m² groß"
     ahead = tokens[k + 1] if k + 1 < len(tokens) else None
     head = next((m for m in tokens[k + 1 :] if m.kind not in LEADING | {"owner", "word"}), None)
@@ -262,8 +261,11 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
             field = f"{where}.{claim.name if claim.kind == 'count' else claim.kind}"
             evidence.append(Evidence(start=claim.start, end=claim.end, text=prompt[claim.start : claim.end], field=field))
     wished = {room: combine_claims(some, prompt, room or "the home") for room, some in by_room.items()}
-    furnished = (r.model_copy(update={"furniture": wished.get(r.id, r.furniture)}) for r in program.rooms)
     own = wished.get("", program.furniture)
+    cooks = any(c.min and natural(c.category) == ("kitchen",) for c in own.counts)  # a studio's room holds no refrigerator: a kitchen does
+    said = {r.id: {"furniture": merge_wishes(r.furniture, wished.get(r.id, Furniture()))} for r in program.rooms}
+    apart = {r.id: {"functions": ("living", "sleeping")} for r in program.rooms if cooks and r.type == "studio_room"}
+    furnished = (r.model_copy(update=said[r.id] | apart.get(r.id, {})) for r in program.rooms)
     return program.model_copy(update={"rooms": tuple(furnished), "furniture": own, "evidence": (*program.evidence, *evidence)})
 
 

@@ -77,10 +77,8 @@ def _elements(tokens: list[Token], lex: Lexicon) -> list[Token]:
             pre = []
             continue
         if token.kind == "pron" and _heads_phrase(tokens, k + 1) and tokens[k + 1].value != "bathroom/ensuite":  # "one bath", "the others"
-            determines = {"rest": "other", "both": "both", "group": "all"}.get(token.value, "definite")
-            token = (
-                replace(token, kind="num", value="", number=1.0) if token.value == "one" else replace(token, kind="det", value=determines)
-            )
+            det = {"rest": "other", "both": "both", "group": "all"}.get(token.value, "definite")
+            token = replace(token, kind="num", value="", number=1.0) if token.value == "one" else replace(token, kind="det", value=det)
         behind = bool(elements) and elements[-1].kind in {"np", "home"} and not pre and token.kind == "amount"
         if token.kind == "home":
             elements += [*_loose([p for p in pre if p.kind != "amount"], None, lex), _plain(token, lex)]
@@ -153,7 +151,7 @@ def _phrase(token: Token, pre: Sequence[Token], compound: bool, lex: Lexicon) ->
     """Put a noun phrase together from its head and what stands in front of it."""
     kind, _, role = token.value.partition("/") if token.kind == "room" else ("bedroom", "", token.value)
     own: dict[str, Any] = {"det": set(), "adjectives": set(), "amounts": [], "taken": list(pre)}
-    own |= {"suite": token.kind == "suite", "functions": {"dining"} if role == "diner" else set()}
+    own |= {"suite": token.kind == "suite", "functions": {"diner": {"dining"}, "shower": {"shower"}}.get(role, set())}
     phrase = replace(token, kind="np", type=kind, role=role if role in ROLES else "", number=0.0, compound=compound, **own)
     for part in pre:
         if part.kind == "num":
@@ -184,6 +182,7 @@ def _behind(tokens: Sequence[Token], k: int, phrase: Token, postposed: bool, lex
     adjectives = "adjectives_behind" in lex.traits
     while k < len(tokens):
         token, ahead = tokens[k], tokens[k + 1] if k + 1 < len(tokens) else None
+        leads = token.kind in {"colon", "times"} and ahead is not None and ahead.kind == "num"
         determines = token.kind == "det" and token.value in BEHIND and (adjectives or not _heads_phrase(tokens, k + 1))
         if determines or (token.kind == "adj" and adjectives):
             (phrase.det if token.kind == "det" else phrase.adjectives).add(token.value)
@@ -198,11 +197,7 @@ def _behind(tokens: Sequence[Token], k: int, phrase: Token, postposed: bool, lex
             else:
                 phrase.index = int(token.number)
             k += counted
-        elif (
-            token.kind != "clf"
-            and token.text not in lex.sign("very")
-            and not (token.kind in {"colon", "times"} and ahead is not None and ahead.kind == "num")
-        ):
+        elif token.kind != "clf" and token.text not in lex.sign("very") and not leads:
             return k
         phrase.taken.append(token)
         k += 1

@@ -168,10 +168,10 @@ def _before(sentence: list[Token], k: int, *breaks: str) -> Token | None:
 
 
 def _is_listed_again(sentence: list[Token], k: int) -> bool:
-    """Whether a bare noun is the next item of a list that has it already: "bedroom 12 m2, bedroom 10 m2" are two."""
+    """Whether a bare noun is the next item of a list that has it already: "bedroom 12 m2, bedroom 10 m2" are two; those of a role by their sizes."""
     first, here = _before(sentence, k, "cue", "colon", "verb"), sentence[k]
     items = [here] if first is None else [first, here]
-    bare = not any(e.det or e.number or e.plural or e.role for e in items)
+    bare = not any(e.det or e.number or e.plural or (e.role and not e.amounts) for e in items)
     ends = k + 1 == len(sentence) or sentence[k + 1].kind not in {"cue", "verb"}  # of "..., bathroom next to it" it is the subject
     return first is not None and bare and ends and here.type not in ALONE and sentence[k - 1].kind in {"comma", "join"}
 
@@ -211,7 +211,7 @@ def _resolve_phrase(state: Reading, sentence: list[Token], k: int, level: int | 
     if "other" in e.det:
         return _others(state, sentence, k, role, level)
     known = same and not _is_listed_again(sentence, k)
-    rooms = _by_role(state, sentence, k, role, level) if role else _known_rooms(state, sentence, k, level) if known else []
+    rooms = (_by_role if role else _known_rooms)(state, sentence, k, level) if known or (role and not same) else []
     return rooms or _new(state, e, int(e.number or (2 if "both" in e.det or (e.plural and e.type not in PLURAL_NAMES) else 1)), role, level)
 
 
@@ -255,28 +255,26 @@ def _within(state: Reading, e: Token, count: float) -> None:
         raise ImpossibleError(what, advice, [*words, state.words.quote(max(e.first - 1, 0), e.last, "rooms")])
 
 
-def _by_role(state: Reading, sentence: list[Token], k: int, role: str, level: int | None) -> list[Named]:
+def _by_role(state: Reading, sentence: list[Token], k: int, level: int | None) -> list[Named]:
     """Return the rooms of a role; one that was only counted may take it."""
-    e, same, many = sentence[k], state.inventory.of(sentence[k].type), _many(sentence[k])
+    e, same, many, role = sentence[k], state.inventory.of(sentence[k].type), _many(sentence[k]), sentence[k].role
     rooms = [r for r in same if r.role == role]
     if rooms and (many or not e.introduces):
         return rooms if many else rooms[:1]
+    here = next((int(x.value) for x in sentence[k:] if x.kind == "level"), level)  # "a bedroom downstairs. The master goes upstairs"
     plain = [r for r in same if not r.role and r.id not in state.inventory.belongings and not _later(r, e.first)]
+    plain = [r for r in plain if here is None or r.level in {None, here}]
     if e.type == "bathroom":
         bare = "bare_nouns" in state.words.lexicon.traits and not e.det and not e.number
         slots = [r for r in same if r.open_slot] or (plain if len(plain) == 1 and (e.definite or bare) else [])
         return [close(slots[0], role, e.text)] if slots and role not in {"ensuite", "primary"} else []
     listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")  # "two bedrooms and a guest room": none of the two
-    slots = [
-        r
-        for r in plain
-        if r.open_slot
-        and (e.definite or r.whole or _is_spelt_out(sentence, k, r) or listed is None or r.id not in listed.ids)
-        and (r.level in {None, level} or (e.definite and level is None))  # counted on another storey: others
-    ]
+    others = listed.ids if listed is not None and not e.definite else ()
+    free = [r for r in plain if r.open_slot and (r.level in {None, level} or (e.definite and level is None))]  # those of this storey
+    slots = [r for r in free if r.whole or r.id not in others or _is_spelt_out(sentence, k, r)]
     if slots:
         return [close(r, role, e.text) for r in slots[: int(e.number or len(slots)) if many else 1]]
-    return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite else []
+    return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite and not plain[0].extra else []
 
 
 def _later(room: Named, place: int) -> bool:

@@ -33,7 +33,7 @@ def read(state: Reading, sentence: list[Token]) -> None:
 
 def _np(c: Clause, k: int, e: Token) -> None:
     if e.banned:
-        if not (e.type == "bedroom" and e.role) and not (e.type == "kitchen" and "/" in e.value) and e.role != "ensuite":
+        if not (e.type == "bedroom" and e.role) and not (e.type in {"kitchen", "bathroom"} and "/" in e.value):
             c.state.banned.append((e.type, e))  # "no guest room" leaves the other bedrooms, "no kitchen-diner" a kitchen
         return
     before = c.near(k - 1)

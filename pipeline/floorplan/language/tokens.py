@@ -1,5 +1,6 @@
 """From characters to tokens: the phrases of a prompt with their meaning, numbers and amounts put together."""
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -179,12 +180,8 @@ def _number(tokens: Sequence[Token], k: int, written_by_tens: bool) -> tuple[int
         joined = end > k and (tokens[end].kind, tokens[end].value) == ("join", "and")
         word = tokens[end + joined] if end + joined < len(tokens) else None
         turned = word is not None and 0 < current < 10 and 20 <= word.number < 100  # "fünfundsiebzig"
-        if (
-            word is None
-            or (joined and not (turned or current >= 20 or (total >= 100 and not current)))
-            or word.kind != "num"
-            or word.value == "figure"
-        ):
+        goes_on = not joined or turned or current >= 20 or (total >= 100 and not current)
+        if word is None or not goes_on or word.kind != "num" or word.value == "figure":
             break
         if word.number >= 100:
             total, current = total + max(current, 1.0) * word.number, 0.0
@@ -199,15 +196,18 @@ def _number(tokens: Sequence[Token], k: int, written_by_tens: bool) -> tuple[int
 
 
 def _relabel(tokens: Sequence[Token], words: Words) -> list[Token]:
-    """Settle what depends on words far off: floors counted from a ground floor, studies where there are bedrooms."""
+    """Settle what depends on words far off: floors counted from a ground floor, studies where there are bedrooms, how many "each child" are."""
     lex, relabelled = words.lexicon, list(tokens)
+    kids = [a for a, b in itertools.pairwise(m for m in tokens if m.kind != "clf") if b.value == "child" or b.text in lex.sign("child")]
     ground = "floors_from_one" in lex.traits and any(m.kind == "level" and lex.sign("ground") & set(m.text.split()) for m in tokens)
     bedrooms = any(m.kind == "room" and m.value.startswith("bedroom") and m.value != "bedroom/guest" for m in tokens)
     for k, token in enumerate(tokens):
         if token.kind == "level" and ground:
             shifted = (n for n in (1, 2) if any(token.text.endswith(t) for t in lex.sign(f"floor_{n}")))
             relabelled[k] = replace(token, value=str(next(shifted, token.value)))
-        elif token.kind == "every" and any(m.kind == "room" and m.text == token.text.rsplit(" ", 1)[-1] for m in tokens[:k]):
+        elif token.value == "each" and any(token is a for a in kids):
+            relabelled[k] = replace(token, number=next((a.number for a in kids if a.kind == "num"), 0.0))
+        elif token.kind == "every" and any(m.kind == "room" and m.text.startswith(token.text.rsplit(" ", 1)[-1]) for m in tokens[:k]):
             relabelled[k] = replace(token, kind="room", value="bedroom", plural=True)  # "todas las habitaciones": so many were counted
         elif token.kind == "home" and k and bedrooms and token.text in lex.sign("study"):
             relabelled[k] = replace(token, kind="room", value="office")
