@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from pipeline import taxonomy
+from pipeline.arrays import Floats
 from pipeline.card import Category
 from pipeline.entities.asset import Asset, Link
 from pipeline.entities.files import load_asset
@@ -30,7 +31,6 @@ from pipeline.sources.meshes.reach import make_reach_test
 from pipeline.sources.meshes.touching import OVER
 from pipeline.usd.articulation import is_visual_only
 
-Floats = NDArray[np.float64]
 Reached = Callable[[Floats], NDArray[np.bool_]]
 POINTS = 1500  # on a link, each way
 UP = 0.7  # upward part of the normal of a top

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
+
 GRAVITY = 9.81  # [m/s2]
 HINGE, SLIDE = 1.2, 1.5  # pushes, in weights of what moves (a hinge's at the arm of its centre of mass)
 LEAST = 1.0  # [N m] on a hinge of what is fixed: a hand's, on a cupboard door that weighs nothing about its own axis

@@ -13,7 +13,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
+
 REST, OPEN, SHUT, LEFT = 5.0, 2.5, 2.0, 0.5  # [s] at rest; pushing; pushing back; left alone
 AFTER = 1.5  # [s] by which a joint waits for those that must be open before it
 SAMPLE = 0.25  # [s] between looks at what lies about

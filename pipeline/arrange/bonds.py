@@ -14,11 +14,9 @@ from numpy.typing import NDArray
 
 from pipeline.arrange.item import Item, other_wall
 from pipeline.arrange.learnt_relations import LearntRelations
+from pipeline.arrays import Floats, Ints
 from pipeline.geometry.compiled import compiled
 from pipeline.relations.frames import REFERENCES, SIDES
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 REACH, TURN = 0.4, math.radians(30)  # how far from a mode a relation is nearly held [m, rad]
 SURE, ADOPTED = 0.7, 4.0  # who of a relation this strong is astray belongs there all the same, from this far [m]

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import mode_poses
 from pipeline.arrange.item import Item, other_wall, wrap_yaw, yaw_difference
@@ -14,8 +13,7 @@ from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.snapping import ACROSS, FACING, height
 from pipeline.arrange.walls import Edge, at_wall, hides_window, opening_cost
-
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
 
 OFF_WALL = 1.0  # cost of standing free for what always belongs to a wall [m]; less for what seldom does
 OFF_ITS_WALL = 3.0  # and for what belongs to one: a wardrobe goes to a wall 3 m away before it stands free

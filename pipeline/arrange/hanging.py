@@ -3,12 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.arrange.walls import Edge, EdgeOpening, edges_of
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Opening
-
-Floats = NDArray[np.float64]
 
 GAP = 0.004  # between the wall and the back of what hangs on it [m]
 ROOM = 0.06  # between what hangs and what is beside it [m]

@@ -5,15 +5,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.arrange.learnt_relations import Habit, LearntRelations
 from pipeline.arrange.shapes import Grip, Shape, shape
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.geometry.prisms import join_prisms
-
-Floats = NDArray[np.float64]
 
 FIXTURES = frozenset({"kitchen", "appliance", "bath"})  # super-categories of what one stands before to use it
 FORWARD, NOTHING = np.array([0.0, -1.0]), join_prisms([])

@@ -12,11 +12,10 @@ from pipeline.arrange.item import Item
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.world import compose_pose, free_poses, make_world, put
+from pipeline.arrays import Floats
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.prisms import Prisms
 from pipeline.geometry.stance import stand_pose
-
-Floats = NDArray[np.float64]
 
 SPREAD = 0.12  # when a pose cuts the floor, poses nearer to it than this are not tried [m]; more after every try
 TRIES = 24  # poses whose floor is looked at per group

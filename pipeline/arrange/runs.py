@@ -14,8 +14,7 @@ from pipeline.arrange.candidates import hides
 from pipeline.arrange.item import Item, yaw_difference
 from pipeline.arrange.site import Site
 from pipeline.arrange.walls import Edge
-
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
 
 KINDS = frozenset({"kitchen", "appliance"})  # super-categories of what may stand in a run; one of them at least is a kitchen's own
 SINK, COOKER = "sink_cabinet", "oven"

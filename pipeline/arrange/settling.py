@@ -14,8 +14,8 @@ from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.occupancy import Occupancy, Place
 from pipeline.arrange.walls import Edge
 from pipeline.arrange.world import FREE, conflicts, put
+from pipeline.arrays import Floats
 
-Floats = NDArray[np.float64]
 Ranked = tuple[Floats, Floats]  # poses (C, 4) and their costs (C,), the cheapest first
 Led = tuple[Group, Sequence[Edge]]  # a group, and the walls at one of which its first member is to stand
 

@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset, Joint
 from pipeline.geometry.convex import hull
 from pipeline.geometry.kinematics import OPENERS, grips
 from pipeline.geometry.memo import cached_on_asset
 from pipeline.geometry.prisms import Prisms, Sweep, join_prisms, prism, solid
-
-Floats = NDArray[np.float64]
 
 BEDSIDE = 0.6  # at the sides of a bed, the length at its head that is left to nightstands [m]
 STRIDE = 3  # steps of a hinge that are covered by one prism

@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.arrange.walls import Edge, edges_of
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Plan
 from pipeline.geometry.door_sweeps import leaf_sweep, shut_leaf
 from pipeline.geometry.free_space import PASSABLE, Floor, FreeSpace, bare_floor, free_space
 from pipeline.geometry.prisms import Prisms, join_prisms
 from pipeline.geometry.robot import Robot
 from pipeline.geometry.walls import leaves
-
-Floats = NDArray[np.float64]
 
 PASS_WIDTH = 0.9  # of a wide opening, this much about its middle is kept passable [m]
 NEAR_DOOR = 0.15  # the robot must find a place this near to the middle of each opening, so that it gets through [m]

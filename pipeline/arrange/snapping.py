@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.arrange.bonds import Bond, at_anchor, find_bond
 from pipeline.arrange.item import Item
@@ -12,8 +11,7 @@ from pipeline.arrange.learnt_relations import LearntRelations
 from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.walls import FAR, at_wall, in_corner, square
-
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
 
 LOOSE = 0.3  # a wall may take a bound object this far from the place at its anchor [m]
 ACROSS = 2.0  # and this far what stands across the room from its anchor: a TV stand goes to the wall behind it

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pipeline.arrange.item import wrap_yaw
 from pipeline.arrange.settings import ThingsSettings
 from pipeline.arrange.surfaces import HIGHEST, Surfaces, surfaces
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
@@ -20,7 +21,6 @@ from pipeline.geometry.kinematics import moved_links, rotation
 from pipeline.geometry.memo import cached_on_asset
 from pipeline.geometry.prisms import Prisms, join_prisms, prism, solid
 
-Floats = NDArray[np.float64]
 UNIT = np.ones(3)
 BACKED = 0.3  # share of a surface's depth, from its back, that is for what lies there
 HEADROOM = 0.01  # above what a drawer carries [m]: a bottle that fits to the millimetre wedges under the worktop as the drawer jolts

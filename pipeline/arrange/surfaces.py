@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import taxonomy
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset, Link
 from pipeline.geometry.convex import hull
 from pipeline.geometry.memo import cached_on_asset
 from pipeline.geometry.prisms import Prisms, solid
-
-Floats = NDArray[np.float64]
 
 FLAT = 1e-3  # vertices within this height of a piece's highest lie on its top [m]
 LEAST = 0.07  # narrowest top that anything stands on [m]

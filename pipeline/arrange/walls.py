@@ -5,12 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.arrange.item import Item, wrap_yaw, yaw_difference
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Opening
-
-Floats = NDArray[np.float64]
 
 WALL = 0.3  # an opening's segment is at most this far from the faces of its wall [m]
 LEAST = 0.05  # of an opening that lies in a wall [m]

@@ -8,13 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrange.shapes import Shape
+from pipeline.arrays import Floats, Ints
 from pipeline.geometry.compiled import borrowing, compiled
 from pipeline.geometry.contact import depth
 from pipeline.geometry.polygons import beyond
 from pipeline.geometry.prisms import Prisms, join_prisms
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SOFT = 0.1  # a body may reach this far into an access place at no cost [m]
 SOFT_WALL = 0.15  # and a wall this far [m]

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
+from pipeline.arrays import Floats
 from pipeline.baselines import reachability
 from pipeline.baselines.boxes import Boxes, boxes_of, extend_front, iou, mates, overlaps
 from pipeline.baselines.rooms import BOX
@@ -24,8 +24,6 @@ CLIP = 0.1  # largest change of a channel in one step
 COLLISION, ROOM, REACH = 2 * 0.075, 3e5, 100.0  # weights
 FAR = 50.0  # [m] depth and height of what lies beyond a wall
 MOVES = (0, 1, 6, 7)  # channels that move: x, y, cos, sin
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 
+from pipeline.arrays import Floats
 from pipeline.geometry.boxes import footprints
 from pipeline.geometry.floor_raster import Mask, Raster
 
-Floats = NDArray[np.float64]
 CELL = 0.05  # [m]
 WIDTH, HEIGHT = 0.2, 1.5  # [m] of PhyScene's robot
 SECOND = 0.03  # [m2] below which a second part of the floor is none

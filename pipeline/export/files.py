@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from pipeline.export.model import Floats, Hull, Material, Model, Surface
+from pipeline.arrays import Floats
+from pipeline.export.model import Hull, Material, Model, Surface
 from pipeline.rendering import palette
 
 MATERIALS = "materials.mtl"

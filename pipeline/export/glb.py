@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.export.files import quaternion
-from pipeline.export.model import Body, Floats, Inertia, Joint, Material, Model, Placed, Scene, Surface, inverse
+from pipeline.export.model import Body, Inertia, Joint, Material, Model, Placed, Scene, Surface, inverse
 
 FLOAT, UINT = 5126, 5125  # component types
 VERTICES, INDICES = 34962, 34963  # targets of buffer views

@@ -9,8 +9,9 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
+from pipeline.arrays import Floats
 from pipeline.export.files import display, numbers, position, quaternion, xml_bytes
-from pipeline.export.model import Body, Floats, Inertia, Joint, Material, Model, Placed, Scene, inverse
+from pipeline.export.model import Body, Inertia, Joint, Material, Model, Placed, Scene, inverse
 
 TIMESTEP = 0.002  # [s], MuJoCo's own default
 

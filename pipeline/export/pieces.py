@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from pxr import Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 from scipy.spatial import ConvexHull
 
+from pipeline.arrays import Floats
 from pipeline.errors import ContentError
-from pipeline.export.model import Box, Floats, Hull, Material, Surface, inverse
+from pipeline.export.model import Box, Hull, Material, Surface, inverse
 
 GREY = Material("grey", (0.8, 0.8, 0.8), 0.5, 0.0, 1.0, None)
 FRICTION = 1.0  # of what is bound to no physics material, as MuJoCo has it

@@ -11,8 +11,9 @@ import numpy as np
 from pxr import Pcp, Sdf, Usd, UsdGeom, UsdPhysics
 from scipy.spatial.transform import Rotation
 
+from pipeline.arrays import Floats
 from pipeline.errors import ContentError
-from pipeline.export.model import Body, Floats, Inertia, Joint, Model, Placed, Scene, inverse
+from pipeline.export.model import Body, Inertia, Joint, Model, Placed, Scene, inverse
 from pipeline.export.pieces import read_pieces, world
 
 VARIANT = "MuJoCo"

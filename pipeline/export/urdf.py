@@ -12,9 +12,10 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from pipeline.arrays import Floats
 from pipeline.errors import ContentError
 from pipeline.export.files import display, numbers, position, quaternion, xml_bytes
-from pipeline.export.model import Body, Floats, Inertia, Joint, Model, Scene, inverse
+from pipeline.export.model import Body, Inertia, Joint, Model, Scene, inverse
 
 KINDS = {"hinge": "revolute", "slide": "prismatic", "fixed": "fixed"}
 STRONG = {"effort": "1000", "velocity": "100"}  # which URDF demands of every limit and USD does not bound

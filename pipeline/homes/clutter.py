@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline import taxonomy
 from pipeline.arrange import Hanging, SurfacePlacement, ThingsSettings
 from pipeline.arrange.walls import EdgeOpening
+from pipeline.arrays import Floats
 from pipeline.card import Hangs, cards
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Room
@@ -24,8 +24,6 @@ from pipeline.geometry.walls import leaves
 from pipeline.homes.library import Library
 from pipeline.homes.request import PARTS, layout_type
 from pipeline.taxonomy import Layout, Rug
-
-Floats = NDArray[np.float64]
 
 STYLE_WEIGHT = 3.0  # how much likelier a thing in the style of what it belongs to is taken than another
 SPREAD = (0.25, 0.05)  # how far curtains and blinds reach beyond their window at either side [m]

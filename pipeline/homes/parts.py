@@ -10,11 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.diffusion.context import RoomContext, RoomOpening
-
-Floats = NDArray[np.float64]
 
 LAST = ("living_room", "living_dining_room", "dining_room")  # what keeps the rest of the floor when the others have been cut off
 QUIET, DOOR = "bedroom", 0.15  # whose part is better without doors, and what each costs it, beside 1 for a square's shape

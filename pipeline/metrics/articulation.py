@@ -10,11 +10,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pipeline.arrays import Ints
+from pipeline.arrays import Floats, Ints
 from pipeline.geometry.boxes import iou_matrix
 from pipeline.geometry.kinematics import OPENERS, beyond_body
 from pipeline.metrics.intervals import Mean, Rate, bootstrap, rate
-from pipeline.metrics.rows import Boxes, Floats, Row, boxes, by_room
+from pipeline.metrics.rows import Boxes, Row, boxes, by_room
 
 Extension = Literal["heuristic", "joints"]
 Sweeps = Mapping[str, Floats]  # asset_id -> (J, 2, 3) [m, object frame]: boxes that the joints sweep

@@ -6,14 +6,12 @@ What the floor says is left out: real and made rooms share it.
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline import taxonomy
+from pipeline.arrays import Floats
 from pipeline.metrics.rules import frames_of
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.walls import AROUND, measure
-
-Floats = NDArray[np.float64]
 
 STEP = 0.08  # of gaps [m]
 LOW, HIGH = -3, 12  # steps: what is farther is far

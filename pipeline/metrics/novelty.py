@@ -9,14 +9,13 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 from scipy.stats import ks_2samp
 
 from pipeline import taxonomy
+from pipeline.arrays import Floats
 from pipeline.relations.arrangement import Arrangement
 
-Floats = NDArray[np.float64]
 Json = dict[str, Any]
 
 ALONE = 1.0  # cost of a thing without a match, and the most that a match costs [m]

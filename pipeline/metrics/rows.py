@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from pipeline.arrays import Floats
 
 Row = Mapping[str, Any]
-Floats = NDArray[np.float64]
 Boxes = tuple[Floats, Floats, Floats]  # bottom centres (N, 3) [m], yaws (N,) [rad], full extents (N, 3) [m]
 
 

@@ -10,11 +10,11 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.frames import Boxes, Frames, relate, wrap_angle
 from pipeline.relations.walls import AROUND, measure
 
-Floats = NDArray[np.float64]
 Rule = Callable[[Arrangement], Iterator[bool]]
 
 TABLES = ("dining_table",)

@@ -4,11 +4,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.metrics.intervals import Mean, Rate, rate
-
-Floats = NDArray[np.float64]
 
 FOLDS = 5
 TREES = 100

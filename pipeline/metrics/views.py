@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.metrics.perturbations import HARMS
 from pipeline.metrics.two_samples import frechet, kernel_distance, linear_accuracy
 from pipeline.relations.arrangement import Arrangement
 from pipeline.rendering.plan_view import SIZE, plan_view
 
-Floats = NDArray[np.float64]
 Embed = Callable[[NDArray[np.uint8]], Floats]  # plan views (R, 64, 64, 3) to features (R, F)
 Features = Callable[[Sequence[Arrangement]], Floats]  # rooms to features (R, F)
 Json = dict[str, Any]

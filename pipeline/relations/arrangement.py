@@ -7,12 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow.compute as pc
-from numpy.typing import NDArray
 
 from pipeline import tables, taxonomy
+from pipeline.arrays import Floats
 from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
-
-Floats = NDArray[np.float64]
 
 COLUMNS = {
     ROOMS: ["scene_id", "room_id", "layout_type", "polygon"],

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
 
 WIDTH = 0.05  # narrowest kernel
 FINE = 5  # grid points to a kernel's width

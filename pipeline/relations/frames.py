@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from pipeline.arrays import Floats
 
 SIDES = ("front", "right", "back", "left", "over")
 NORMAL = np.array([[0.0, -1], [1, 0], [0, 1], [-1, 0], [0, 1]])

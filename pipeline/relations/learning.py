@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline import taxonomy
+from pipeline.arrays import Floats
 from pipeline.relations import walls
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.clusters import entropy, split
@@ -14,7 +15,6 @@ from pipeline.relations.frames import ALONG, NORMAL, OVER, SIDES, Boxes, Frames,
 from pipeline.relations.model import PairRelation, Relations, relations
 from pipeline.relations.modes import Mode, Span, in_any_mode
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 LEAST_CASES = 30  # members that must share a room with an anchor

@@ -5,9 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.relations.frames import ALONG, NORMAL, SIDES, Frames, offset_along, wrap_angle
-
-Floats = NDArray[np.float64]
 
 METRES, RADIANS = 0.05, 0.09  # a member this near to a mode holds it [m], [rad]: 5 cm, 5 degrees
 

@@ -3,14 +3,12 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.clusters import split
 from pipeline.relations.model import WallRelation
 from pipeline.relations.modes import METRES, RADIANS, Span
-
-Floats = NDArray[np.float64]
 
 AROUND = ("front", "right", "back", "left")
 LEAST_CASES = 30  # things of a category

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.card import cards
 from pipeline.retrieval.index import AssetIndex, Match
 
-Floats = NDArray[np.float64]
 STEP, MOST_STEPS = 30.0, 2.0  # how far off a finish has to be to count once [CIELAB]; it counts so many times at most
 
 # Groups of categories whose finishes go together in a room (`finish` of their cards), and those from which the room's is drawn, the first that the library has.

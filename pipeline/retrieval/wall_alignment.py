@@ -1,11 +1,9 @@
 """A retrieved asset is rarely as large as what was asked for: the side that stood at a wall stays where it was, all of it in the room, and out of what stands flush with it."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.geometry.compiled import compiled
-
-Floats = NDArray[np.float64]
 
 REACH = 0.12  # a side so near to a wall stands at it [m]
 BEYOND = 0.1  # past its ends a wall goes on for what is beside it [m]

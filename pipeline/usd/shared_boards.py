@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from pipeline.arrays import Floats, Ints
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
 from pipeline.entities.plan import Plan
@@ -20,8 +21,6 @@ from pipeline.geometry.memo import cached_on_asset
 from pipeline.geometry.walls import Prism
 from pipeline.usd.articulation import hidden_colliders, is_visual_only, link_names, loose
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 # How far tops and undersides may be off as colliders are made, and from where on up nothing is felt (pipeline/sources/meshes/touching.py): said again, or

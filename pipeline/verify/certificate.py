@@ -3,13 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pipeline.arrays import Floats
 from pipeline.geometry.kinematics import OPENERS
 from pipeline.verify.settings import Policy
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

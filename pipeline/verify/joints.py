@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
@@ -23,7 +24,6 @@ from pipeline.verify.certificate import JointCheck
 from pipeline.verify.settings import VerifySettings
 from pipeline.verify.supports import Support, covered, moved_by
 
-Floats = NDArray[np.float64]
 Walks = Mapping[int, tuple[FreeSpace, int]]
 
 WALL, DOOR = "wall", "door"  # blocker's name where a part meets a wall, or a closed door's lever

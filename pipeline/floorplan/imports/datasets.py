@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import OpeningKind
 from pipeline.errors import ContentError
-from pipeline.floorplan.imports.sketch import MAX_OPENINGS, MAX_ROOMS, Floats, Sketch, SketchOpening, SketchRoom, identifiers, refuse
+from pipeline.floorplan.imports.sketch import MAX_OPENINGS, MAX_ROOMS, Sketch, SketchOpening, SketchRoom, identifiers, refuse
 from pipeline.sources.reasons import REASONS, Row, SourceError
 from pipeline.sources.settings import FrontFilters
 from pipeline.sources.threed_front.house import openings_of, rooms_of

@@ -7,7 +7,8 @@ import numpy as np
 import shapely
 from shapely.validation import explain_validity
 
-from pipeline.floorplan.imports.sketch import MAX_CORNERS, Floats, Sketch, SketchRoom, refuse
+from pipeline.arrays import Floats
+from pipeline.floorplan.imports.sketch import MAX_CORNERS, Sketch, SketchRoom, refuse
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 SAME = 1e-3  # [m] corners nearer than this are one

@@ -5,13 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pipeline.arrays import Floats
 from pipeline.entities.plan import OpeningKind, Room, Swing
 from pipeline.errors import RefusedError
 
-Floats = NDArray[np.float64]
 Faces = Literal["inner", "centre", ""]  # what polygons are: inner wall faces, walls' centre lines, or to be found out
 Where = Literal["all", "some", "none"]  # which doors the file states: all, as many as it knows, or it has no word of doors
 

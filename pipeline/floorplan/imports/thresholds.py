@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from pipeline.arrays import Floats
 from pipeline.floorplan.imports.rings import LEAST_AREA, corners_of, without_collinear
-from pipeline.floorplan.imports.sketch import Floats, Sketch, SketchRoom
+from pipeline.floorplan.imports.sketch import Sketch, SketchRoom
 from pipeline.floorplan.imports.wall_stretches import TOUCH, Stretch, edges, stretches
 
 DEEPEST = 0.45  # [m] of a wall that a floor reaches into

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Opening, Room, Swing
-from pipeline.floorplan.imports.sketch import Floats, OwnPlanError, Sketch, SketchOpening, refuse
+from pipeline.floorplan.imports.sketch import OwnPlanError, Sketch, SketchOpening, refuse
 from pipeline.floorplan.imports.wall_stretches import TOUCH, Stretch
 from pipeline.floorplan.program.defaults import DOOR, DOOR_HEIGHT
 

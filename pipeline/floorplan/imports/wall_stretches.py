@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Room
-from pipeline.floorplan.imports.sketch import Floats
 
 THICKEST = 0.65  # [m] rooms that face each other across more have no common wall
 TOUCH = 0.03  # [m] rooms nearer than this touch: no wall lies between them

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.entities.plan import Plan, Room
 from pipeline.floorplan.program.floor_program import FloorProgram
 
@@ -15,8 +15,6 @@ LEGS = (1.2, 1.0, 0.8, 0.6, 0.5)  # of a cut along both its walls, between inner
 BESIDE = 0.15  # wall that stays between a cut and an opening [m]
 STAYS = 0.6  # straight wall that stays of a side [m]
 MOST = 0.03  # of a room's area that a cut may take
-
-Floats = NDArray[np.float64]
 
 
 class Corner(NamedTuple):

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.floorplan.search.grid import Floats, Halves, Ints, Labels
+from pipeline.arrays import Floats, Ints
+from pipeline.floorplan.search.grid import Halves, Labels
 
 Corners = list[tuple[int, int]]
 

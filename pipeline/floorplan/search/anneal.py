@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pipeline.arrays import Floats, Ints
 from pipeline.floorplan.search.energy import Terms, terms, weighted_sum, zone_spread
-from pipeline.floorplan.search.grid import Floats, Ints, Labels, Measures, empty, measure
+from pipeline.floorplan.search.grid import Labels, Measures, empty, measure
 from pipeline.floorplan.search.spec import Spec, tree
 from pipeline.geometry.compiled import borrowing
 

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pipeline.floorplan.search.grid import Floats, Ints, Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
+from pipeline.arrays import Floats, Ints
+from pipeline.floorplan.search.grid import Labels, Measures, ell_opening, hull_area, inner_area, notch_width, opening, simple
 from pipeline.floorplan.search.spec import Spec
 from pipeline.geometry.compiled import borrowing
 

@@ -9,10 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats, Ints
 from pipeline.geometry.compiled import borrowing, compiled
 
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
 Labels = NDArray[np.int16]
 
 

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
+from pipeline.arrays import Floats, Ints
 from pipeline.floorplan.search.energy import ZONE_WEIGHT, Terms, overlap, share_error, stair_fit, stair_snug
-from pipeline.floorplan.search.grid import Floats, Ints
 from pipeline.floorplan.search.spec import Spec
 from pipeline.geometry.compiled import borrowing
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pipeline.floorplan.search.grid import Floats, Ints
+from pipeline.arrays import Floats, Ints
 from pipeline.floorplan.search.layout import Wishes, cost
 from pipeline.geometry.compiled import borrowing
 

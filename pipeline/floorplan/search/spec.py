@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pipeline.floorplan.search.grid import Floats, Halves, Ints
+from pipeline.arrays import Floats, Ints
+from pipeline.floorplan.search.grid import Halves
 
 
 class Spec(NamedTuple):

@@ -7,11 +7,12 @@ from itertools import combinations, product
 
 import numpy as np
 
+from pipeline.arrays import Floats, Ints
 from pipeline.floorplan.program.daylight import YIELDS, daylit
 from pipeline.floorplan.program.defaults import DEFAULTS, OUTSIDE
 from pipeline.floorplan.program.floor_program import FloorProgram, RoomReq
 from pipeline.floorplan.search.energy import TERMS, Terms
-from pipeline.floorplan.search.grid import Floats, Halves, Ints
+from pipeline.floorplan.search.grid import Halves
 from pipeline.floorplan.search.spec import Spec
 
 UNIT = 0.25  # side of a cell [m]

@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pipeline.arrays import Ints
 from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.search import slicing
-from pipeline.floorplan.search.grid import Ints, Labels
+from pipeline.floorplan.search.grid import Labels
 from pipeline.floorplan.search.layout import Wishes
 from pipeline.floorplan.search.spec import tree
 from pipeline.floorplan.search.storeys import Storey
