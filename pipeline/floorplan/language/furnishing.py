@@ -188,7 +188,7 @@ class Scan:
         return k
 
     def _listed(self, k: int, size: int) -> bool:
-        """Whether the thing at word k stands behind another in a list, or heads one: "a desk and a wardrobe"."""
+        """Whether the thing at word k stands behind another in a list, or heads one: "a desk and a wardrobe", "Bed, desk"."""
         small = ("one", "article", "size", "look")
         figures = {j for j in range(max(k - FAR, 0), min(k + FAR, len(self.words))) if self.words[j].start in self.numbers}
         at = next(j for j in range(k - 1, -2, -1) if not self.length(j, *small) and j not in figures)
@@ -196,7 +196,8 @@ class Scan:
             while self.length(at - 1, "and"):
                 at -= 1
             return any(self.phrase(j, "name")[0] == at - j for j in range(max(at - 4, 0), at))
-        at = k + size + (self.length(k + size, "and") if at < k - 1 else 0)
+        heads = at < k - 1 or self.text(at) in STOPS | {""}
+        at = k + size + (self.length(k + size, "and") if heads else 0)
         while at > k + size and (step := self.length(at, *small) or at in figures):
             at += step
         return at > k + size and any(kind == "name" and not owned for _, kind, _, owned in self._here(at))
