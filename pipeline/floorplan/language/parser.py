@@ -19,7 +19,7 @@ from pipeline.floorplan.language.rooms import Reading, introduce
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import has_minus, split_words
-from pipeline.floorplan.language.tokens import Token, amounts, read_words, segment
+from pipeline.floorplan.language.tokens import Token, amounts, on_each_level, read_words, segment
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
 from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence, FloorProgram, Furniture, Span, Things
@@ -61,7 +61,7 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
     starts = [t.start for t in words.written]  # a token where a wish was taken out: whose it is tells which rooms there are
     places = [bisect.bisect_left(starts, w.start) for w in wishes]
     gaps = [Token("wish", first=k, last=k) for k in places]
-    tokens = sorted([*gaps, *amounts(segment(words), words)], key=lambda m: m.first)
+    tokens = on_each_level(sorted([*gaps, *amounts(segment(words), words)], key=lambda m: m.first))
     said = [m for m in apply_frames(tokens, words) if m.kind != "wish"]
     refuse(said, words)
     people = [m for m in said if m.kind == "people"]

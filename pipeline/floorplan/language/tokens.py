@@ -214,6 +214,27 @@ def _relabel(tokens: Sequence[Token], words: Words) -> list[Token]:
     return relabelled
 
 
+def on_each_level(tokens: Sequence[Token]) -> list[Token]:
+    """Say storey by storey what is said of each: "a bathroom on each floor" is one downstairs, one upstairs; of two where nobody has counted them."""
+    spread = list(tokens)
+    count = next((int(t.number) for t in tokens if t.value == "storeys" and t.number > 1), 2)
+    for said in [t for t in tokens if t.value == "each_floor"]:
+        k = next(j for j, t in enumerate(spread) if t is said)
+        start, end = k, k + 1
+        while start and spread[start - 1].kind in {"det", "num", "size", "adj", "room", "suite", "clf"}:
+            start -= 1
+        leads = not any(t.kind == "room" for t in spread[start:k])
+        while leads and end < len(spread) and spread[end].kind not in {"comma", "stop"}:
+            end += 1
+        rooms = spread[k + 1 : end] if leads else spread[start:k]
+        if any(t.kind == "room" for t in rooms):
+            levels = [replace(said, kind="level", value=str(level)) for level in range(count)]
+            listed = [[level, *map(replace, rooms)] if leads else [*map(replace, rooms), level] for level in levels]
+            comma = Token("comma", first=said.last, last=said.last, text=",")
+            spread[k if leads else start : end] = [t for item in listed for t in (*item, comma)][:-1]
+    return spread
+
+
 # amounts: figures whose unit or meaning stands elsewhere too
 
 
