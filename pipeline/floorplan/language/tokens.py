@@ -224,7 +224,7 @@ def on_each_level(tokens: Sequence[Token]) -> list[Token]:
         while start and spread[start - 1].kind in {"det", "num", "size", "adj", "room", "suite", "clf"}:
             start -= 1
         leads = not any(t.kind == "room" for t in spread[start:k])
-        while leads and end < len(spread) and spread[end].kind not in {"comma", "stop"}:
+        while leads and end < len(spread) and spread[end].kind not in {"comma", "stop"} and spread[end].value != "each_floor":
             end += 1
         rooms = spread[k + 1 : end] if leads else spread[start:k]
         if any(t.kind == "room" for t in rooms):
