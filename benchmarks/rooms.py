@@ -6,8 +6,9 @@ Needs what `make run` leaves: data/ and models/. Drafts are what the layout mode
 (a shower in every bathroom, chairs at every table); unguided ones with what is asked but without guidance, numbers and sizes as they come;
 guided ones with all constraints. Finished rooms are what the arranger makes of each. Rates are those of all seeds together, with 95 %
 intervals. FID of plan views is measured on training floors, against the split: that of the rooms that stand there is its floor, and no
-other floors than theirs are in the way; that of the same rooms finished is what finishing costs. R_acoll is that of the objects that open, those of the
-real rooms with the library's models in the places of theirs; the judge asks of one joint at a time whether it touches anything, walls included. Behind them stand the floors of training rooms, which `part` in manifests/rooms.yaml is taken from, and last the bars that
+other floors than theirs are in the way; that of the same rooms finished is what finishing costs. R_acoll is that of the objects that open,
+those of the real rooms with the library's models in the places of theirs; the judge asks of one joint at a time whether it touches anything,
+walls included. Behind them stand the floors of training rooms, which `part` in manifests/rooms.yaml is taken from, and last the bars that
 these figures are held to.
 """
 
@@ -32,13 +33,12 @@ from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Home, Placement
 from pipeline.experiments.realism import alike, embeddings, furnished
 from pipeline.experiments.rooms import FIRST, spread, test_rooms
-from pipeline.geometry.kinematics import OPENERS
 from pipeline.homes.factory import Factory, load_factory
 from pipeline.homes.furnish import Draft, draft_rooms, retrieve
 from pipeline.homes.request import RoomJob
 from pipeline.homes.room_finishing import finish
 from pipeline.homes.rows import object_row
-from pipeline.metrics.articulation import are_obstructed, sweeps_of
+from pipeline.metrics.articulation import are_obstructed, sweeps_of, swept
 from pipeline.metrics.category import ckl
 from pipeline.metrics.layout_features import features
 from pipeline.metrics.relations import compare, furniture
@@ -107,17 +107,13 @@ def drafts_of_real(factory: Factory, jobs: Sequence[RoomJob], real: Sequence[Exa
 
 def obstructed(factory: Factory, jobs: Sequence[RoomJob], made: Furniture) -> str:
     """Return R_acoll in words, as a share of the objects that open: by the paper's box, by boxes of the real sweeps, and as the judge finds it."""
-    sweeps, box, swept, judged = sweeps_of(factory.library.joints), [], [], []
+    sweeps, box, boxes, joints = sweeps_of(factory.library.joints), [], [], []
     for job, own in zip(jobs, made, strict=True):
         rows = [object_row(str(job.index), p, openable=factory.library[p.asset_id].openable) for p in own]
         box += are_obstructed(rows, "heuristic")
-        swept += are_obstructed(rows, "joints", sweeps)
-        certificate = verify_home(Home(str(job.index), 0, 0, "", "", job.plan, tuple(own)), factory.library, factory.verify)
-        clear: dict[str, bool] = {}
-        for check in (check for check in certificate.joints if check.part_class in OPENERS):
-            clear[check.object_id] = clear.get(check.object_id, True) and check.clear
-        judged += [not free for free in clear.values()]
-    return f"{np.mean(box):.2f} / {np.mean(swept):.2f} / {np.mean(judged):.3f} of {len(box)}"
+        boxes += are_obstructed(rows, "joints", sweeps)
+        joints += verify_home(Home(str(job.index), 0, 0, "", "", job.plan, tuple(own)), factory.library, factory.verify).joint_rows()
+    return f"{np.mean(box):.2f} / {np.mean(boxes):.2f} / {swept(joints)['objects']['rate']:.3f} of {len(box)}"
 
 
 def views_apart(
