@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.card import cards
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.rates import Deal, Rates
-from pipeline.corpus.houses.room_occupancy import Space, Spot, against, ahead, box_of, shift_spot
+from pipeline.corpus.houses.room_occupancy import Space, Spot, against, ahead, box_of, filler, shift_spot
 from pipeline.corpus.houses.stock import Stock
 
 LAMP_DROP = 0.02
@@ -69,12 +69,14 @@ class Arranger:
             yield model
             width = model.size[0] * by
 
-    def at_wall(self, category: str, *, corner: float = 0.6, aside: float = 0.004, tries: int = 3) -> bool:
+    def at_wall(self, category: str, *, corner: float = 0.6, tries: int = 3) -> bool:
         """Put a piece of the category with its back to a wall, its front free; smaller models after a failure."""
         front = free_front(category, 0.35)
         for model in self.smaller(category, tries, 0.95):
-            spot = against(self.rng, self.space, model, front=front, corner=corner, aside=aside)
-            if spot is not None and self.space.try_add(model, spot, clearances=[ahead(spot, model.size[1], front, model.size[0])]):
+            spot = against(self.rng, self.space, model, front=front, corner=corner)
+            if spot is not None and self.space.try_add(
+                model, spot, clearances=[ahead(spot, model.size[1], front, model.size[0] + 2 * filler(model))]
+            ):
                 return True
         return False
 

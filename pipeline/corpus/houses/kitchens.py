@@ -4,11 +4,10 @@ import itertools
 
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger, free_front
-from pipeline.corpus.houses.room_occupancy import ahead, on_side
+from pipeline.corpus.houses.room_occupancy import FILLER, ahead, on_side
 
 FRONT = 0.75  # free floor before a run: an open door and a cook [m]
 SEAM = 0.002
-FILLER = 0.035  # between a run and the wall that it ends at: a door that stands open needs it for its handle [m]
 SMALL = 7.0  # kitchens of less floor have no other wall for a refrigerator [m2]
 NEEDED = frozenset({"sink_cabinet", "oven", "refrigerator", "kitchen_cabinet"})
 """Nobody cooks without one of each: their least widths are kept free until they stand."""
@@ -32,7 +31,7 @@ def furnish_kitchen(arranger: Arranger) -> None:
         others = [c for c in left if c not in {"refrigerator", "kitchen_cabinet"}]
         run(arranger, ["kitchen_cabinet", *itertools.chain.from_iterable((c, "kitchen_cabinet") for c in others)])
     if not any(i.model.category == "refrigerator" for i in arranger.space.items):
-        arranger.at_wall("refrigerator", corner=0.95, aside=FILLER)
+        arranger.at_wall("refrigerator", corner=0.95)
 
 
 def run(arranger: Arranger, wanted: list[str]) -> list[str]:
@@ -96,6 +95,7 @@ def hang(arranger: Arranger, side: int, low: float, high: float) -> None:
         at, end = max(a, low), min(b, high)
         while (unit := arranger.pick("wall_cabinet", width=end - at - SEAM, height=tallest)) is not None:
             spot = on_side(space, side, at + SEAM + unit.size[0] / 2, unit.size[1], 0.004)
-            if arranger.chance(0.85):
-                space.try_add(unit, spot, HUNG_AT)
+            if arranger.chance(0.85) and space.try_add(unit, spot, HUNG_AT):
+                way = ahead(spot, unit.size[1], unit.size[0], unit.size[0])
+                space.swept.append((way, HUNG_AT, HUNG_AT + unit.size[2]))  # no lamp hangs before its doors
             at += SEAM + unit.size[0]

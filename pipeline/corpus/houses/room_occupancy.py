@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from pipeline.corpus.furniture.catalogue import Model
+from pipeline.corpus.furniture.catalogue import Model, corpus_cards
 from pipeline.corpus.houses.records import Item, Rect, wrap
 from pipeline.entities.plan import Opening, Room
 
@@ -25,6 +25,8 @@ LEAF_TOP = 2.12  # nothing hangs lower than this where a door leaf swings [m]
 LOW_PIECE = 0.65  # what is no higher than this may stand before any window [m]
 CELL = 0.1
 WAY = 0.3  # half the width that people leave for the ways through their rooms [m]
+FILLER = 0.035  # beside what opens, and behind a lid that falls back: a door that stands open needs it for its handle [m]
+LIDS = frozenset({"trash_can"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +120,7 @@ class Space:
         self.sides = sides_of(room)
         self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects([(side.x, side.y) for side in self.sides])]
         self.clearances: list[Rect] = []
-        self.swept: list[Rect] = []
+        self.swept: list[tuple[Rect, float, float]] = []
         self.gaps: list[tuple[Rect, float]] = []
         self.panes: list[tuple[Rect, float]] = []
         self.doors: list[tuple[float, float]] = []
@@ -139,7 +141,7 @@ class Space:
         step = 0.35 if narrow and opening.width > 1.0 else STEP
         self.clearances.append(side.strip(low - 0.03, high + 0.03, 0.0, max((high - low) + 0.05, step) if swings_here else step))
         if swings_here:
-            self.swept.append(self.clearances[-1])
+            self.swept.append((self.clearances[-1], 0.0, LEAF_TOP))
         self.doors.append(side.point((low + high) / 2, 0.36))
 
     def fits(self, box: Rect, low: float, high: float, under: Rect | None = None, slender: float = 0.0) -> bool:
@@ -151,7 +153,7 @@ class Space:
             return False
         if low < LOW and any(meets(box, r) for r in self.clearances):
             return False
-        if low < LEAF_TOP and any(meets(box, r) for r in self.swept):
+        if any(meets(box, r) and low < z1 and z0 < high for r, z0, z1 in self.swept):
             return False
         if any(low < top and meets(box, r) for r, top in self.gaps):  # nothing hangs in a doorway
             return False
@@ -214,15 +216,20 @@ class Space:
         return fits
 
 
-def against(
-    rng: np.random.Generator, space: Space, model: Model, *, front: float, corner: float = 0.5, aside: float = 0.004, low: float = 0.0
-) -> Spot | None:
-    """Return a place with the back to a wall, `front` metres free before it; with chance `corner` at a stretch's end, `aside` off it [m]."""
+def filler(model: Model) -> float:
+    """Return what is left free on either side of a model [m]: a model that does not open may stand for one that does."""
+    return FILLER if corpus_cards()[model.category].moving else 0.0
+
+
+def against(rng: np.random.Generator, space: Space, model: Model, *, front: float, corner: float = 0.5, low: float = 0.0) -> Spot | None:
+    """Return a place with the back to a wall, `front` metres free before it; with chance `corner` at a stretch's end."""
     w, d, h = model.size
-    gap = back_gap(rng)
+    gap, aside = back_gap(rng), filler(model)
+    if model.category in LIDS:
+        gap = max(gap, FILLER)
     candidates: list[tuple[int, float, float]] = []
     for i, side in enumerate(space.sides):
-        candidates += [(i, a, b) for a, b in space.spans(side, d + gap, front, low, low + h) if b - a >= w + 0.02]
+        candidates += [(i, a, b) for a, b in space.spans(side, d + gap, front, low, low + h) if b - a >= w + max(0.02, 2 * aside)]
     if not candidates:
         return None
     if corner >= 0.95:  # the room's own corners first
@@ -231,13 +238,13 @@ def against(
     slack = b - a - w
     if rng.random() < corner:
         if corner >= 0.95 and (a < 0.01) != (b > space.sides[i].length - 0.01):
-            into = min(slack, aside)
+            into = min(slack, aside + 0.004)
             near = a + w / 2 + into if a < 0.01 else b - w / 2 - into
             return on_side(space, i, near, d, gap)
-        into = min(slack, abs(float(rng.normal(0.0, 0.02))) + 0.005)
+        into = min(slack - aside, max(aside, abs(float(rng.normal(0.0, 0.02))) + 0.005))
         s = a + w / 2 + into if rng.random() < 0.5 else b - w / 2 - into
     else:
-        s = a + w / 2 + slack * float(np.clip(rng.normal(0.5, 0.22), 0.0, 1.0))
+        s = a + w / 2 + aside + (slack - 2 * aside) * float(np.clip(rng.normal(0.5, 0.22), 0.0, 1.0))
     return on_side(space, i, s, d, gap)
 
 

@@ -159,7 +159,7 @@ def hang_curtains(arranger: Arranger, share: float, openings: Sequence[Opening])
         x, y = side.point((low + high) / 2, d / 2 + 0.004)
         box = box_of(x, y, side.yaw, width, d)
         blocked = any(meets(box, r) and z0 < top and bottom < z1 for r, z0, z1 in space.solids)
-        if not blocked and not any(meets(box, r) for r in space.swept):
+        if not blocked and not any(meets(box, r) for r, low, _ in space.swept if low == 0.0):
             space.items.append(Item(model, space.number, (x, y, bottom), side.yaw, scale))
             space.solids.append((box, bottom, top))
 
