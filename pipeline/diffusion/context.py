@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +16,14 @@ class Library(Protocol):
     """What the sampler asks of the asset library while it guides: the retrieval index of a layer above is one."""
 
     def lookup(
-        self, categories: Sequence[Sequence[str | None]], sizes: NDArray[np.float64], latents: NDArray[np.float32]
+        self,
+        tastes: Sequence[Any],
+        categories: Sequence[Sequence[str | None]],
+        positions: NDArray[np.float64],
+        sizes: NDArray[np.float64],
+        latents: NDArray[np.float64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
-        """Find the nearest asset of each slot: categories (B, N), None for an empty slot; sizes (B, N, 3) [m]; latents (B, N, 32).
+        """Find the asset that each slot will retrieve: `tastes` (B,) of the rooms; categories (B, N), None for an empty slot; positions and sizes (B, N, 3) [m]; latents (B, N, 32).
 
         Returns its size as placed (B, N, 3) [m] (the asked one where there is none), and the boxes that its joints sweep
         (B, N, K, 2, 3) [m]: lower and upper corner in the object frame, NaN where a slot has fewer than K.
@@ -60,7 +65,7 @@ class RoomContext:
     """A room to furnish.
 
     `polygon` (n, 2) [m, world], inner wall faces, counter-clockwise. `n_target` is the exact number of objects that is
-    asked for, or None; `category_bounds` bound the numbers of categories; where it holds something of the first of two groups in `company`, it holds so many things of the second. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
+    asked for, or None; `category_bounds` bound the numbers of categories; `taste` is what the library is asked to suit; where it holds something of the first of two groups in `company`, it holds so many things of the second. `elevation` [m] is the z of the floor, `height` [m] that of the ceiling above it.
     """
 
     layout_type: str
@@ -71,6 +76,7 @@ class RoomContext:
     height: float = 2.7
     category_bounds: tuple[CategoryBounds, ...] = ()
     company: tuple[tuple[tuple[str, ...], tuple[str, ...], int], ...] = ()
+    taste: Any = None
 
     @classmethod
     def of(

@@ -6,7 +6,9 @@ given in the unit of what moves, and clipped. It is the expected x0 that is move
 later step can then bring back what the guidance has torn apart.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import torch
 from torch import Tensor
@@ -22,9 +24,10 @@ from pipeline.diffusion.settings import SampleSettings
 
 @dataclass(frozen=True, slots=True)
 class Guidance:
-    """What guides a batch: the rooms, their classes (B, N), the library, the classes that open (C + 1,), pairs that may share a place (B, N, N)."""
+    """What guides a batch: the rooms, their tastes, classes (B, N), the library, the classes that open (C + 1,), pairs that may share a place (B, N, N)."""
 
     rooms: RoomBatch
+    tastes: Sequence[Any]
     classes: Tensor
     library: Library | None
     opens: Tensor
@@ -56,7 +59,8 @@ class Guidance:
         if self.library is None:
             return size, None
         names = [[codec.norm.classes[c] if c < codec.classes else None for c in row] for row in self.classes.tolist()]
-        placed, sweeps = self.library.lookup(names, size.double().cpu().numpy(), metric[..., SHAPE].cpu().numpy())
+        positions, sizes, latents = (part.double().cpu().numpy() for part in (metric[..., :3], size, metric[..., SHAPE]))
+        placed, sweeps = self.library.lookup(self.tastes, names, positions, sizes, latents)
         return torch.from_numpy(placed).to(x0), torch.from_numpy(sweeps).to(x0)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -101,7 +102,7 @@ class Sampler:
                 for row, i in enumerate(part):
                     classes[row, : len(inventories[i])] = inventories[i]
                 labels = torch.from_numpy(classes).to(self.net.codec.mean.device)
-                clean = self._batch(conditioning.first(tokens), labels, [keys[i] for i in part])
+                clean = self._batch(conditioning.first(tokens), labels, [keys[i] for i in part], [rooms[i].taste for i in part])
                 for i, x0, mine in zip(part, clean, labels, strict=True):
                     proposals[i] = self.net.codec.proposals(x0, mine, rooms[i])
         return proposals
@@ -115,14 +116,14 @@ class Sampler:
             for start in range(0, len(alike), self.settings.batch):
                 yield *shape, alike[start : start + self.settings.batch]
 
-    def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[Key]) -> Tensor:
+    def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[Key], tastes: Sequence[Any]) -> Tensor:
         """Sample one padded batch: x0 (batch, slots, 40) of objects of `classes` (batch, slots), on their device."""
         device = classes.device
         rooms = rooms.to(device)
         code, ones = self.net.floor_code(rooms, classes), torch.ones(len(keys), device=device)
         names = self.header.norm.classes
         opens, tucks = openable_classes(names).to(device), tuck_roles(names).to(device)[classes]
-        guidance = Guidance(rooms, classes, self.library, opens, tucks[:, :, None] + tucks[:, None] == 3, self.settings)
+        guidance = Guidance(rooms, tastes, classes, self.library, opens, tucks[:, :, None] + tucks[:, None] == 3, self.settings)
 
         before: Tensor | None = None
 

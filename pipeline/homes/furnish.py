@@ -15,8 +15,8 @@ from pipeline.execution import give_memory_back
 from pipeline.homes.parts import split_room
 from pipeline.homes.request import RoomJob
 from pipeline.homes.resources import Resources
-from pipeline.retrieval.index import AssetIndex, Match
-from pipeline.retrieval.taste import Taste, draw_finishes, draw_style, tasteful
+from pipeline.retrieval.index import AssetIndex, Match, Taste
+from pipeline.retrieval.taste import draw_finishes, draw_style, tasteful
 from pipeline.retrieval.wall_alignment import keep_at_walls, part, put_before_walls
 from pipeline.taxonomy import Taxonomy
 
@@ -44,6 +44,8 @@ def draft_rooms(resources: Resources, jobs: Sequence[RoomJob]) -> list[Draft]:
     with resources.time("sample"):
         wholes = [RoomContext.of(job.plan, job.room_id, job.layout_type) for job in jobs]
         draws = [seeds.generator(sampler.seed, "usual", job.index, job.number) for job in jobs]
+        tastes = [taste_of(job, sampler.seed, resources.index) for job in jobs]
+        wholes = [replace(whole, taste=taste) for whole, taste in zip(wholes, tastes, strict=True)]
         rooms = [_parts(job, whole, known, draw) for job, whole, draw in zip(jobs, wholes, draws, strict=True)]
         contexts = [part for parts in rooms for part in parts]
         keys = [(job.index, job.number + PART * k, job.draw) for job, parts in zip(jobs, rooms, strict=True) for k in range(len(parts))]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -85,7 +86,7 @@ def finish(draft: Draft, resources: Resources) -> RoomResult:
     job, r, robot = draft.job, resources, resources.verify.robot
     site = Site.of(job.plan, job.room_id, replace(robot, radius=robot.radius + MARGIN), r.verify.cell)
     rejects: list[Reject] = [("object", "no_asset", category) for category in draft.lost]
-    smaller = r.index.favouring(draft.taste.style, wished=draft.taste.wished).smaller
+    smaller = functools.partial(r.index.smaller, draft.taste)
     counted = job.bounds[0] is not None or bool(arranged(job.furniture))
     stands, free = post_optimise(site, draft.placements, r.library, r.learnt, r.postopt, smaller, target=job.walkable, keep_count=counted)
     placements = tuple(round_placement(p) for p in stands.placements)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.arrays import Floats
 from pipeline.card import cards
 from pipeline.errors import ContentError
 from pipeline.geometry.kinematics import beyond_body
@@ -22,6 +23,16 @@ SAT_AT = ("desk", "dressing_table", "dining_table")  # categories at which peopl
 SEAT = 0.55  # width of a seat, and of who sits on it [m]
 KNEES = 0.5  # what opens above this is above the seat [m]
 CLOSE = 0.4  # a seat behind what reaches no farther before the front is still at the desk [m]
+STEP, MOST_STEPS = 30.0, 2.0  # how far off a finish has to be to count once [CIELAB]; it counts so many times at most
+
+
+@dataclass(frozen=True, slots=True)
+class Taste:
+    """What steers retrieval in a room: the home's `style` ("" for none), `wished` where somebody asked for it, and finishes by group."""
+
+    style: str = ""
+    wished: bool = False
+    finishes: Mapping[str, Floats] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,15 +67,6 @@ class AssetIndex:
     settings: RetrievalSettings
     styles: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, "<U1"))
     finishes: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))
-    style: str = ""
-    style_cost: float = 0.0
-
-    def favouring(self, style: str | None, *, wished: bool = True) -> AssetIndex:
-        """Return the index that prefers a style: assets of another are farther, by `prefer_style` where it is wished, else `prefer_taste`.
-
-        What opens has often none, and stays.
-        """
-        return replace(self, style=style or "", style_cost=self.settings.prefer_style if wished else self.settings.prefer_taste)
 
     def openers(self) -> AssetIndex:
         """Return the index of the assets that open alone."""
@@ -102,7 +104,7 @@ class AssetIndex:
             merged = merged_boxes(beyond_body(whole, row["size"]), settings.sweep_boxes)
             boxes[i, : len(merged)] = merged
         shapes, finishes = zip(*(known[r["asset_id"]] for r in rows), strict=True)
-        raw = np.array(shapes, float).reshape(len(rows), -1)
+        raw = np.array(shapes, np.float64).reshape(len(rows), -1)
         mean = raw.mean(0)
         # A latent channel that the encoder does not use must not be blown up by its tiny spread.
         spread = np.maximum(raw.std(0), 0.05)
@@ -127,21 +129,30 @@ class AssetIndex:
             np.array(finishes, float),
         )
 
-    def nearest(
-        self, categories: Sequence[str | None], sizes: NDArray[np.float64], latents: NDArray[np.float32] | NDArray[np.float64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Return the row (P,) of the nearest asset, -1 where there is none, and its distance (P,)."""
-        asked = np.array([c or "" for c in categories])
-        rows = np.full(len(asked), -1, np.int64)
-        distances = np.full(len(asked), np.inf)
-        for name in sorted(set(asked.tolist())):
-            shelf = self.shelves.get(name)
-            if shelf is None:
-                continue
-            where = np.flatnonzero(asked == name)
-            table = self.distance(shelf, np.asarray(sizes, float)[where], np.asarray(latents, float)[where])
-            best = table.argmin(1)
-            rows[where], distances[where] = shelf[best], table[np.arange(len(where)), best]
+    def suited(
+        self, tastes: Sequence[Taste], categories: Sequence[str | None], sizes: Floats, latents: Floats
+    ) -> tuple[NDArray[np.int64], Floats]:
+        """Return the row (P,) of the asset that suits each ask best, -1 where there is none, and its distance (P,).
+
+        `tastes` (P,); `sizes` (P, 3) [m], `latents` (P, 32). An asset of another style than the taste's is farther, by `prefer_style` where
+        that was wished for, else by `prefer_taste`; what opens has often none. Of the `shortlist` nearest that is taken which is nearest
+        with its finish counted in.
+        """
+        s, asked = self.settings, np.array([c or "" for c in categories])
+        rows, distances = np.full(len(asked), -1, np.int64), np.full(len(asked), np.inf)
+        for name in sorted(set(asked.tolist()) & set(self.shelves)):
+            shelf, where = self.shelves[name], np.flatnonzero(asked == name)
+            own = [tastes[k] for k in where.tolist()]
+            far = self.distance(shelf, sizes[where], latents[where]) + self.style_costs(shelf, own)
+            best = np.argsort(far, axis=1, kind="stable")[:, : s.shortlist]
+            group = cards()[name].finish if name in cards() else ""
+            wished = np.stack([np.asarray(taste.finishes.get(group, UNKNOWN)) for taste in own])
+            off = np.linalg.norm(self.finishes[shelf[best]] - wished[:, None], axis=2)
+            nearest = np.take_along_axis(far, best, 1)
+            cost = nearest + s.prefer_finish * np.minimum(np.nan_to_num(off) / STEP, MOST_STEPS)
+            chosen = cost.argmin(1)[:, None]
+            rows[where] = shelf[np.take_along_axis(best, chosen, 1)[:, 0]]
+            distances[where] = np.take_along_axis(nearest, chosen, 1)[:, 0]
         return rows, distances
 
     def distance(self, shelf: NDArray[np.int64], sizes: NDArray[np.float64], latents: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -159,12 +170,15 @@ class AssetIndex:
         openable = self.openable[shelf]
         if openable.any():
             total = np.where(openable[None], total, (total + s.prefer_offset) * s.prefer_openable)
-        if self.style:
-            own = self.styles[shelf]
-            total = total + self.style_cost * ((own != "") & (own != self.style))[None]
         return total
 
-    def smaller(self, asset_id: str, max_area: float) -> Match | None:
+    def style_costs(self, shelf: NDArray[np.int64], tastes: Sequence[Taste]) -> Floats:
+        """Return how much farther (P, S) the assets of a shelf are for being of another style than each taste's."""
+        own, wanted = self.styles[shelf][None], np.array([taste.style for taste in tastes])[:, None]
+        costs = np.array([self.settings.prefer_style if taste.wished else self.settings.prefer_taste for taste in tastes])
+        return np.asarray(costs[:, None] * ((own != "") & (wanted != "") & (own != wanted)))
+
+    def smaller(self, taste: Taste, asset_id: str, max_area: float) -> Match | None:
         """Return the closest asset of the same category whose footprint w * d is below `max_area` [m2] (algorithm 2).
 
         Closeness is measured from `asset_id` itself; an articulated asset is followed by another that opens, when the
@@ -179,24 +193,32 @@ class AssetIndex:
         if not len(fits):
             return None
         raw = self.latents[row] * self.spread + self.mean
-        table = self.distance(fits, self.sizes[row][None], raw[None])[0]
+        table = (self.distance(fits, self.sizes[row][None], raw[None]) + self.style_costs(fits, [taste]))[0]
         best = int(table.argmin())
         closest = int(fits[best])
         return self.fit(closest, float(table[best]), self.sizes[closest])
 
     def lookup(
-        self, categories: Sequence[Sequence[str | None]], sizes: NDArray[np.float64], latents: NDArray[np.float32]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
-        """Return the placed size (B, N, 3) and the sweep boxes (B, N, K, 2, 3) [m] of each slot's nearest asset.
+        self,
+        tastes: Sequence[Taste | None],
+        categories: Sequence[Sequence[str | None]],
+        positions: Floats,
+        sizes: Floats,
+        latents: Floats,
+    ) -> tuple[Floats, NDArray[np.float32]]:
+        """Return the placed size (B, N, 3) and the sweep boxes (B, N, K, 2, 3) [m] of the asset that each slot of B rooms will retrieve.
 
-        The size is the asset's own, static ones stretched as `match` would; a slot without an asset keeps what it asked.
+        The size is the asset's own, static ones stretched as `fit` would; a slot without an asset keeps what it asked.
         """
         flat = [c for row in categories for c in row]
-        asked = np.asarray(sizes, float).reshape(-1, 3)
-        rows, _ = self.nearest(flat, asked, np.asarray(latents, float).reshape(len(flat), -1))
+        each = [taste or Taste() for taste, row in zip(tastes, categories, strict=True) for _ in row]
+        meant, shapes = np.array(sizes, float), np.array(latents, float)
+        for room, names in enumerate(categories):
+            meant[room], shapes[room] = alike_in_sets(names, positions[room], meant[room], shapes[room])
+        asked = meant.reshape(-1, 3)
+        rows, _ = self.suited(each, flat, asked, shapes.reshape(len(flat), -1))
         safe, has_asset = np.maximum(rows, 0), rows >= 0
-        limit = np.where(self.articulated[safe], 0.0, self.settings.stretch)[:, None]
-        scale = np.clip(asked / self.sizes[safe], 1 - limit, 1 + limit)
+        scale = self.scales(safe, asked)
         placed = np.where(has_asset[:, None], self.sizes[safe] * scale, asked)
         boxes = self.sweep_boxes[safe].copy()
         boxes[~has_asset] = np.nan
@@ -210,13 +232,37 @@ class AssetIndex:
             raise ContentError(f"asset {asset_id!r} is not in the library", "run `dvc repro` so that library and samples agree")
         return at
 
-    def fit(self, row: int, distance: float, asked: NDArray[np.float64]) -> Match:
-        """Return the asset of a row as what was `asked` for (3,) [m] gets it: static ones are stretched a little."""
-        limit = np.full(3, 0.0 if self.articulated[row] else self.settings.stretch)
-        if self.categories[row] in cards() and cards()[self.categories[row]].finish == "kitchen":
-            limit[2] = 0.0  # one works at one height along a run
-        scale = np.clip(np.asarray(asked, float) / self.sizes[row], 1 - limit, 1 + limit)
+    def scales(self, rows: NDArray[np.int64], asked: Floats) -> Floats:
+        """Return by what the assets of rows (P,) are stretched towards the `asked` sizes (P, 3) [m]: static ones a little, a run's units never in height."""
+        limits = np.where(self.articulated[rows], 0.0, self.settings.stretch)[:, None] * np.ones(3)
+        limits[[self.categories[row] in cards() and cards()[self.categories[row]].finish == "kitchen" for row in rows], 2] = 0.0
+        return np.clip(asked / self.sizes[rows], 1 - limits, 1 + limits)
+
+    def fit(self, row: int, distance: float, asked: Floats) -> Match:
+        """Return the asset of a row as what was `asked` for (3,) [m] gets it."""
+        scale = self.scales(np.array([row]), np.asarray(asked, float)[None])[0]
         return Match(self.asset_ids[row], distance, scale, self.sizes[row] * scale, bool(self.openable[row]))
+
+
+def sets(categories: Sequence[str | None], positions: Floats) -> list[list[int]]:
+    """Return the groups (indices, two or more each) of things at `positions` (P, 2 or 3) [m] that are to be one model."""
+    groups: dict[tuple[str, int], list[int]] = {}
+    for k, category in enumerate(categories):
+        of = cards()[category].set if category and category in cards() else None
+        if category is None or of is None:
+            continue
+        near = [(float(np.linalg.norm(positions[j, :2] - positions[k, :2])), j) for j, other in enumerate(categories) if other in of.at]
+        if near and min(near)[0] <= of.within:
+            groups.setdefault((category, min(near)[1]), []).append(k)
+    return [group for group in groups.values() if len(group) > 1]
+
+
+def alike_in_sets(categories: Sequence[str | None], positions: Floats, sizes: Floats, latents: Floats) -> tuple[Floats, Floats]:
+    """Return the sizes (P, 3) [m] and latents (P, 32) that are asked for: sets ask for one thing, the mean of theirs."""
+    asked, shapes = np.array(sizes, float), np.array(latents, float)
+    for group in sets(categories, positions):
+        asked[group], shapes[group] = asked[group].mean(0), shapes[group].mean(0)
+    return asked, shapes
 
 
 def merged_boxes(boxes: NDArray[np.float64], most: int) -> NDArray[np.float64]:

@@ -18,7 +18,8 @@ FEW = {"evaluations": 6, "batch": 16}
 class Shelf:
     """A library in which everything is 0.5 m wide and opens to the front."""
 
-    def lookup(self, categories, sizes, latents):
+    def lookup(self, tastes, categories, positions, sizes, latents):
+        assert len(tastes) == len(positions) == len(latents)
         assert sizes.shape == (*np.shape(categories), 3)
         placed = np.full_like(sizes, 0.5)
         sweeps = np.full((*sizes.shape[:2], 1, 2, 3), np.nan, np.float32)

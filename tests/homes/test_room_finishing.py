@@ -23,7 +23,7 @@ def test_the_arranger_has_the_robot_and_the_raster_of_the_judge(monkeypatch, cha
     monkeypatch.setattr(finishing, "post_optimise", stop)
     job = SimpleNamespace(plan=one_room(), room_id="room", walkable=None, bounds=(None, None), furniture=Furniture())
     draft = SimpleNamespace(job=job, placements=(), lost=(), taste=SimpleNamespace(style="", wished=False))
-    index = SimpleNamespace(favouring=lambda _style, *, wished: SimpleNamespace(smaller=wished))
+    index = SimpleNamespace(smaller=lambda *_: None)
     settings = replace(SETTINGS, cell=0.08, robot=replace(SETTINGS.robot, **change))
     with pytest.raises(SeenError) as seen:
         finishing.finish(draft, SimpleNamespace(library={}, index=index, learnt=None, postopt=None, verify=settings))

@@ -119,7 +119,7 @@ def test_smaller_is_smaller_of_the_same_category_and_still_opens(index):
     for name in index.asset_ids:
         row = index.row(name)
         area = float(np.prod(index.sizes[row][:2]))
-        match = index.smaller(name, area)
+        match = index.smaller(Taste(), name, area)
         smaller = [r for r in index.shelves[index.categories[row]] if np.prod(index.sizes[r][:2]) < area - 1e-9]
         assert (match is None) == (not smaller)
         if match:
@@ -131,7 +131,7 @@ def test_smaller_is_smaller_of_the_same_category_and_still_opens(index):
 
 def test_smaller_until_nothing_is_left_ends(index):
     name, seen = "cabinet_00", []
-    while (match := index.smaller(name, float(np.prod(index.sizes[index.row(name)][:2])))) is not None:
+    while (match := index.smaller(Taste(), name, float(np.prod(index.sizes[index.row(name)][:2])))) is not None:
         seen.append(match.asset_id)
         name = match.asset_id
     assert len(seen) == len(set(seen)) < 30
@@ -141,7 +141,7 @@ def test_lookup_tells_sizes_and_sweeps_of_what_match_finds(index):
     rng = seeds.generator(6, "asks")
     categories = [["cabinet", None, "dining_chair"], ["bathtub", "cabinet", None]]
     sizes, latents = rng.uniform(0.4, 2.0, (2, 3, 3)), rng.normal(0, 1, (2, 3, 32)).astype(np.float32)
-    placed, sweeps = index.lookup(categories, sizes, latents)
+    placed, sweeps = index.lookup([Taste(), None], categories, np.zeros((2, 3, 3)), sizes, latents)
     assert sweeps.shape == (2, 3, 4, 2, 3)
     for b, n in ((0, 0), (0, 2), (1, 0), (1, 1)):
         match = matches(index, [categories[b][n]], sizes[b, n][None], latents[b, n][None])[0]

@@ -7,8 +7,8 @@ import pytest
 
 from pipeline.entities.asset import Asset, Link, Material, Mesh
 from pipeline.rendering.surface_colour import finish_of
-from pipeline.retrieval.index import AssetIndex
-from pipeline.retrieval.taste import TIMBER, Taste, draw_finishes, draw_style, sets, tasteful
+from pipeline.retrieval.index import AssetIndex, Taste, sets
+from pipeline.retrieval.taste import TIMBER, draw_finishes, draw_style, tasteful
 from tests.geometry.furniture import box
 
 DARK, LIGHT = np.array([30.0, 10.0, 10.0]), np.array([80.0, 5.0, 20.0])
@@ -91,3 +91,13 @@ def test_the_finish_is_the_colour_of_most_of_the_surface():
     assert (lightness, red > 0, yellow > 0) == (pytest.approx(56.3, abs=3.0), True, True)
     empty = replace(link, visuals=(Mesh("none", np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int32)),))
     assert np.isnan(finish_of(replace(asset, links=(empty,)))).all()
+
+
+def test_the_guidance_hears_of_the_asset_that_the_room_will_retrieve():
+    tastes = [Taste("Nordic"), Taste("Modern"), Taste(finishes={TIMBER: DARK}), None]
+    size, pair = [1.26, 0.6, 0.75], [("desk", [1.26, 0.6, 0.75], [0, 0, 0])]
+    sizes, _ = INDEX.lookup(tastes, [["desk"]] * 4, np.zeros((4, 1, 3)), np.array([[size]] * 4), np.zeros((4, 1, 32)))
+    for taste, placed in zip(tastes, sizes, strict=True):
+        match = tasteful(INDEX, taste or Taste(), ["desk"], np.array([size]), np.zeros((1, 32)), np.zeros((1, 3)))[0]
+        np.testing.assert_array_equal(placed[0], match.size)
+    assert asked(tastes[0], pair) != asked(tastes[1], pair)
