@@ -8,7 +8,7 @@ class RetrievalSettings:
     """How an asset is chosen (section `retrieval` of params.yaml)."""
 
     latent_weight: float = 0.3  # weight of the standardised latent's rms difference
-    size_weight: float = 1.0  # weight of the rms log ratio of the sizes
+    size_weight: float = 2.0  # weight of the rms log ratio of the sizes
     prefer_openable: float = 1.5  # assets that do not open are so many times as far, where the category has some that do
     prefer_offset: float = 0.15  # and this much farther, so that a near-perfect static match does not always win
     prefer_style: float = 1.5  # where a style is asked for: assets of another are so much farther
