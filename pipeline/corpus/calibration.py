@@ -1,5 +1,6 @@
 """The calibration: each house of the corpus counted as the reference was counted on real files, and every figure beside the reference, its interval, and whether it is met."""
 
+import itertools
 import math
 import sys
 from collections import Counter
@@ -95,16 +96,8 @@ def _room(room_type: str, polygon: Polygon, items: Sequence[Item], shapes: Seque
 
 def _overlaps(items: Sequence[Item], shapes: Sequence[Polygon]) -> tuple[int, int]:
     """Return how many pairs of things on the floor overlap by more than 1 % of the smaller, and how many pairs there are."""
-    floor = [k for k, i in enumerate(items) if i.position[2] < STANDING]
-    boxes = [items[k].rect() for k in floor]
-    overlaps = 0
-    for n, a in enumerate(boxes):
-        for m in range(n):
-            b = boxes[m]
-            if a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]:
-                one, other = shapes[floor[n]], shapes[floor[m]]
-                overlaps += one.intersection(other).area > 0.01 * min(one.area, other.area)
-    return overlaps, len(floor) * (len(floor) - 1) // 2
+    pairs = list(itertools.combinations([s for i, s in zip(items, shapes, strict=True) if i.position[2] < STANDING], 2))
+    return sum(one.intersection(other).area > 0.01 * min(one.area, other.area) for one, other in pairs), len(pairs)
 
 
 def local(frame: Item, item: Item) -> tuple[float, float]:

@@ -5,7 +5,7 @@ the base joint turns that into PartNet's world (z up, front -x): world = (-z, -x
 """
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -28,9 +28,7 @@ BASE_RPY = "1.570796326794897 0 -1.570796326794897"
 WORLD = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # mesh frame to PartNet's world
 # Corners of a part's box in its own axes, in GAPartNet's order.
 CORNERS = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1), (-1, 1, -1), (1, 1, -1), (1, -1, -1), (-1, -1, -1)], float) / 2
-# PartNet's word for a moving link; storage furniture and tables turn "door" into this.
-ROTATION_DOOR = "rotation_door"
-FURNITURE = frozenset({"StorageFurniture", "Table"})
+FURNITURE = frozenset({"StorageFurniture", "Table"})  # PartNet's word for their doors is "rotation_door"
 JOINT_WORDS = {"revolute": "hinge", "prismatic": "slider"}
 
 
@@ -125,16 +123,10 @@ def without_handles(links: Sequence[LinkRecord]) -> list[LinkRecord]:
         if link.mover is None and link.part:
             extra[link.parent] = extra.get(link.parent, ()) + link.components
     kept = [link for link in links if link.mover is not None or not link.part]
-    old, body = links[-1].name, f"link_{len(kept) - 1}"
-    return [
-        replace(
-            link,
-            name=body if link.name == old else link.name,
-            parent=body if link.parent == old else link.parent,
-            components=link.components + extra.get(link.name, ()),
-        )
-        for link in kept
-    ]
+    body = {links[-1].name: f"link_{len(kept) - 1}"}
+    names = [(body.get(link.name, link.name), body.get(link.parent, link.parent)) for link in kept]
+    own = [link.components + extra.get(link.name, ()) for link in kept]
+    return [replace(link, name=n, parent=p, components=c) for link, (n, p), c in zip(kept, names, own, strict=True)]
 
 
 def write_partnet(models: Sequence[Model], folder: Path) -> None:
@@ -157,23 +149,22 @@ def write_model(model: Model, folder: Path) -> None:
     (folder / TEXTURE).write_bytes(texture.paint(seeds.generator(model.seed, "corpus.furniture.texture"), sheet))
     merged = without_handles(links)
     name = f"partnet_{seeds.key(model.seed, 'corpus.furniture.shapenet'):032x}"
-    _write_text(folder / "mobility.urdf", urdf(name, merged, frame))
-    _write_text(folder / "mobility_annotation_gapartnet.urdf", urdf(name, links, frame))
+    (folder / "mobility.urdf").write_bytes(urdf(name, merged, frame))
+    (folder / "mobility_annotation_gapartnet.urdf").write_bytes(urdf(name, links, frame))
     words = _words(model, merged)
-    _write_text(folder / "semantics.txt", "".join(f"{link} {joint} {word}\n" for link, joint, word in words))
-    _write_text(folder / "semantics_gapartnet.txt", "".join(f"{a} {b} {c}\n" for a, b, c in _gapartnet_words(links, words[-1][2])))
-    _write_json(folder / "mobility_v2.json", mobility(merged, words, frame))
-    _write_json(folder / "link_annotation_gapartnet.json", annotation(links, frame))
-    low, high = frame.point(shape.bounds()).min(axis=0), frame.point(shape.bounds()).max(axis=0)
-    _write_json(folder / "bounding_box.json", {"min": _numbers(low), "max": _numbers(high)})
-    about = {
-        "user_id": "embedded",
-        "model_cat": model.partnet_category,
-        "category": model.category,
-        "model_id": name.removeprefix("partnet_"),
+    for file, lines in (("semantics.txt", words), ("semantics_gapartnet.txt", _gapartnet_words(links, words[-1][2]))):
+        (folder / file).write_bytes("".join(f"{link} {joint} {word}\n" for link, joint, word in lines).encode())
+    corners, shapenet = frame.point(shape.bounds()), name.removeprefix("partnet_")
+    about = {"user_id": "embedded", "model_cat": model.partnet_category, "category": model.category, "model_id": shapenet}
+    records: dict[str, Any] = {
+        "mobility_v2": mobility(merged, words, frame),
+        "link_annotation_gapartnet": annotation(links, frame),
+        "bounding_box": {"min": _numbers(corners.min(axis=0)), "max": _numbers(corners.max(axis=0))},
+        "meta": about | {"version": "1", "anno_id": model.model_id, "time_in_sec": "0"},
+        "result": [{"id": 0, "name": model.partnet_category.lower(), "children": []}],
     }
-    _write_json(folder / "meta.json", about | {"version": "1", "anno_id": model.model_id, "time_in_sec": "0"})
-    _write_json(folder / "result.json", [{"id": 0, "name": model.partnet_category.lower(), "children": []}])
+    for stem, record in records.items():
+        (folder / f"{stem}.json").write_bytes((json.dumps(record) + "\n").encode())
 
 
 def normalisation(model: Model, shape: Shape) -> Frame:
@@ -183,7 +174,7 @@ def normalisation(model: Model, shape: Shape) -> Frame:
     return Frame((low + high) / 2, 2.0 * float(spread) / float(np.linalg.norm(high - low)))
 
 
-def urdf(name: str, links: Sequence[LinkRecord], frame: Frame) -> str:
+def urdf(name: str, links: Sequence[LinkRecord], frame: Frame) -> bytes:
     """Return the URDF: an empty base, the body fixed to it, movers and handles; no inertials, limits without effort."""
     robot = ET.Element("robot", name=name)
     ET.SubElement(robot, "link", name="base")
@@ -210,7 +201,7 @@ def urdf(name: str, links: Sequence[LinkRecord], frame: Frame) -> str:
         if mover:
             ET.SubElement(joint, "limit", lower="0", upper=_number(_travel(mover, frame)))
     ET.indent(robot, "\t")
-    return '<?xml version="1.0" ?>\n' + ET.tostring(robot, encoding="unicode") + "\n"
+    return f'<?xml version="1.0" ?>\n{ET.tostring(robot, encoding="unicode")}\n'.encode()
 
 
 def _travel(mover: Mover, frame: Frame) -> float:
@@ -251,7 +242,7 @@ def _words(model: Model, links: Sequence[LinkRecord]) -> list[tuple[str, str, st
         if link.mover is None:
             words.append((link.name, "heavy", body))
         else:
-            word = ROTATION_DOOR if furniture and link.mover.semantic == "door" else link.mover.semantic
+            word = "rotation_door" if furniture and link.mover.semantic == "door" else link.mover.semantic
             words.append((link.name, JOINT_WORDS[link.mover.type], word))
     return words
 
@@ -315,11 +306,3 @@ def _number(value: float) -> str:
 
 def _numbers(vector: NDArray[np.float64]) -> list[float]:
     return [round(float(v), 9) + 0.0 for v in vector]
-
-
-def _write_json(path: Path, value: Mapping[str, Any] | Sequence[Any]) -> None:
-    path.write_bytes((json.dumps(value) + "\n").encode())
-
-
-def _write_text(path: Path, value: str) -> None:
-    path.write_bytes(value.encode())

@@ -16,9 +16,9 @@ from pipeline.corpus.furniture.solids import at_height, box, circle, revolve, ri
 FRONTS = ("enamel", "steel", "graphite")
 
 
-def _glides(x: Interval, y: Interval, radius: float, high: float) -> Pieces:
+def _glides(x: Interval, y: Interval, high: float) -> Pieces:
     """Return four short round feet under the corners of a rectangle."""
-    feet = [revolve([(radius, 0.0), (radius, high)], 10, (px, py))[0] for px in x for py in y]
+    feet = [revolve([(0.02, 0.0), (0.02, high)], 10, (px, py))[0] for px in x for py in y]
     return pieces("feet", feet, "plastic")
 
 
@@ -209,7 +209,7 @@ def _top_loader(w: float, d: float, h: float, outside: Material) -> Shape:
     walls = [box(span, y, (0.015, deck), 0.004) for span in edges(x, t)]
     walls += [box(inner, span, (0.03, deck), 0.002) for span in edges(y, t)]
     base = pieces("walls", walls, outside) + pieces("bottom", box(inner, (y[0] + 0.02, y[1]), (0.015, 0.03)), outside)
-    base += _glides(around(0.4 * w), around(0.4 * d), 0.02, 0.015)
+    base += _glides(around(0.4 * w), around(0.4 * d), 0.015)
     base += pieces("console", box(x, (back + 0.004, y[1]), (deck, h), 0.008), outside)
     hole_x, hole_y = inset(x, 0.07), (y[0] + 0.07, back - 0.09)
     base += pieces("deck", strips(x, (y[0], back), hole_x, hole_y, (deck, deck + 0.02), 0.003), outside)
@@ -235,7 +235,7 @@ def _cabinet(x: Interval, y: Interval, h: float, t: float, finish: Material) -> 
     parts += pieces("sides", [box(span, (y[0] + t, y[1]), (0.012, h - 0.03)) for span in edges(x, t)], finish)
     parts += pieces("bottom", box(inset(x, t), (y[0] + 0.03, y[1]), (0.012, 0.03)), finish)
     parts += pieces("back", box(inset(x, t), (y[1] - 0.01, y[1]), (0.03, h - 0.03)), finish)
-    return parts + _glides(inset(x, 0.06), inset(y, 0.06), 0.02, 0.012)
+    return parts + _glides(inset(x, 0.06), inset(y, 0.06), 0.012)
 
 
 def _on_square(angle: float, x: Interval, z: Interval, zc: float) -> tuple[float, float]:

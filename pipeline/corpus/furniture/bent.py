@@ -74,37 +74,27 @@ def tube(path: Sequence[Vector] | Points, radius: float | Sequence[float] | Poin
     return segments
 
 
-def band(path: Points, thick: float, z: Interval, *, closed: bool = False) -> list[Solid]:
-    """Return an upright wall over a path in plan (m, 2), `thick` wide, half to each side: one stave per segment."""
+def wall(
+    path: Points, thick: float, low: float, tops: float | Sequence[float] | Points, ease: float = 0.0, *, closed: bool = False
+) -> list[Solid]:
+    """Return an upright wall over a path in plan (m, 2), `thick` wide, half to each side: one piece per segment.
+
+    Its top may rise and fall: `tops` [m], (m,) or one for all; `ease` rounds the upper edge.
+    """
     left, right = _sides(path, thick, closed)
-    staves = []
+    tops = np.broadcast_to(np.asarray(tops, float), (len(path),))
+    segments = []
     for i in range(len(path) if closed else len(path) - 1):
         j = (i + 1) % len(path)
         ring = np.array([right[i], right[j], left[j], left[i]])
-        staves.append(stack([at_height(ring, height) for height in z]))
-    return staves
-
-
-def wall(path: Points, thick: float, low: float, tops: Sequence[float] | Points, ease: float = 0.0) -> list[Solid]:
-    """Return an upright wall over a path in plan (m, 2) whose top rises and falls: `tops` (m,) [m]; `ease` rounds the upper edge."""
-    left, right = _sides(path, thick, closed=False)
-    segments = []
-    for i in range(len(path) - 1):
-        ring = np.array([right[i], right[i + 1], left[i + 1], left[i]])
-        z = np.array([tops[i], tops[i + 1], tops[i + 1], tops[i]])
+        z = np.array([tops[i], tops[j], tops[j], tops[i]])
         rings = [at_height(ring, low), np.column_stack([ring, z - ease])]
         if ease > 0:
-            centre = np.array([path[i], path[i + 1], path[i + 1], path[i]])
+            centre = np.array([path[i], path[j], path[j], path[i]])
             rings.append(np.column_stack([centre + (ring - centre) * 0.72, z - 0.3 * ease]))
             rings.append(np.column_stack([centre + (ring - centre) * 0.3, z]))
         segments.append(split_bent_quads(stack(rings)))
     return segments
-
-
-def upright(outline: Points, x: Interval, bevel: float) -> Solid:
-    """Return a board over a convex outline (n, 2) in (y, z), counter-clockwise, across `x`, its edges eased by `bevel`."""
-    board = slab(outline, x, bevel)
-    return Solid(board.vertices[:, [2, 0, 1]], board.faces)
 
 
 def _sides(path: Points, thick: float, closed: bool) -> tuple[Points, Points]:
@@ -127,14 +117,10 @@ def sheet(profile: Points, thick: float, width: float | Sequence[float] | Points
     return [split_bent_quads(stack(ends)) for ends in itertools.pairwise(corners)]
 
 
-def prism(outline: Points, axis: str, span: Interval) -> Solid:
-    """Return the solid over a convex outline (n, 2), counter-clockwise, along an axis: x over (y, z), y over (x, z), z over (x, y)."""
-    rings = []
-    for at in span:
-        column = np.full(len(outline), at)
-        a, b = outline[:, 0], outline[:, 1]
-        rings.append(np.stack({"x": (column, a, b), "y": (a, column, b), "z": (a, b, column)}[axis], axis=1))
-    return stack(rings if axis != "y" else rings[::-1])
+def prism(outline: Points, axis: str, span: Interval, bevel: float = 0.0) -> Solid:
+    """Return the board over a convex outline (n, 2), counter-clockwise, along an axis: x over (y, z), y over (x, z), z over (x, y)."""
+    board = slab(outline, span[::-1] if axis == "y" else span, bevel)
+    return Solid(board.vertices[:, {"x": [2, 0, 1], "y": [0, 2, 1], "z": [0, 1, 2]}[axis]], board.faces)
 
 
 def split_bent_quads(solid: Solid) -> Solid:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.corpus.furniture import solids
 from pipeline.corpus.furniture.bent import split_bent_quads
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.catalogue import series_rng
@@ -14,22 +15,7 @@ from pipeline.corpus.furniture.finishes import COLORS, Finish, Finishes, Materia
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, lid, panel, reach, top_button
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, group_pieces, join_shapes, pieces, staves
-from pipeline.corpus.furniture.solids import (
-    at_height,
-    box,
-    circle,
-    cushion,
-    hull,
-    revolve,
-    ring,
-    rod,
-    rounded_rectangle,
-    shell,
-    slab,
-    stack,
-    strips,
-    walls,
-)
+from pipeline.corpus.furniture.solids import at_height, box, circle, cushion, revolve, ring, rod, rounded_rectangle, shell, slab, stack
 from pipeline.corpus.furniture.storage import front_style
 
 WORKTOP = 0.9  # height at which one works in a kitchen [m]
@@ -65,10 +51,8 @@ def kitchen_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: 
 
 def wall_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a wall unit with doors, plain or glazed, or with fronts that lift."""
-    how = replace(
-        unit_style(series_rng(finishes.style_name), finishes, "glass" if form == "glass" else ""), feet="none", feet_height=0.0, nose=0.0
-    )
-    how = replace(how, top=finishes.body, top_thickness=0.018)
+    how = unit_style(series_rng(finishes.style_name), finishes, "glass" if form == "glass" else "")
+    how = replace(how, feet="none", feet_height=0.0, nose=0.0, top=finishes.body, top_thickness=0.018)
     count = max(1, round(w / 0.9))
     if form == "lift":
         cell = (Cell("lift", 1.0, 0), Cell("lift", 1.0, 0)) if h > 0.75 else (Cell("lift", 1.0, 1),)
@@ -91,34 +75,30 @@ def tall_unit(rng: np.random.Generator, form: str, w: float, d: float, h: float,
     return case((w, d, h), [Column(1, cells)], how)
 
 
-def bowl(x: Interval, y: Interval, top: float, depth: float, finish: Material) -> Pieces:
-    """Return an open basin under the rectangle `x`, `y`: a bottom and four walls whose rims end at `top` [m]."""
-    low, wall = top - depth, 0.008
-    drain = revolve([(0.025, low), (0.022, low + 0.003)], 12, ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2))
-    return pieces("bowl", [box(x, y, (low - wall, low)), *walls(x, y, (low, top), wall)], finish) + pieces("drain", drain, "steel")
-
-
 def tap(y: float, z: float, height: float, reach_out: float, finish: Material) -> Shape:
     """Return a tap at (0, y, z): a column, a spout that reaches towards the front, and a lever at its side that turns up."""
     r, radius = 0.011, reach_out / 2
     steps = np.linspace(0, math.pi * 0.85, 6)
     points = [(0.0, y, z)]
     points += [(0.0, y - radius + radius * math.cos(a), z + height - radius + radius * math.sin(a)) for a in steps]
-    solids = [rod(a, b, r, n=10) for a, b in itertools.pairwise(points)] + revolve([(0.024, z), (0.022, z + 0.02)], 14, (0.0, y))
+    column = [rod(a, b, r, n=10) for a, b in itertools.pairwise(points)] + revolve([(0.024, z), (0.022, z + 0.02)], 14, (0.0, y))
     root = (r + 0.002, y, z + 0.055)
     arm = [rod(root, (root[0] + 0.014, y, root[2]), 0.010, n=10)]
     arm.append(box((root[0] + 0.014, root[0] + 0.022), (y - 0.075, y + 0.008), around(0.006, root[2]), 0.002))
     parts = pieces("lever", arm, finish, group="lever")
     lever = Mover("tap_lever", parts, "revolute", (-1, 0, 0), root, 1.0, "hinge_handle", "lever", (1.0, 0.0, 0.0))
-    return Shape(pieces("tap", solids, finish), (lever,))
+    return Shape(pieces("tap", column, finish), (lever,))
 
 
-def _sink_into_top(shape: Shape, hole_x: Interval, hole_y: Interval, basin: Pieces) -> Shape:
-    """Return the case with a hole for `basin` in its top."""
+def _sink_into_top(shape: Shape, x: Interval, y: Interval, rim: float, depth: float, finish: Material) -> Shape:
+    """Return the case with a hole in its top over `x`, `y`, and under it an open basin: a bottom and four walls that end at `rim` [m]."""
     old = next(p for p in shape.base if p.name == "top")
     (x0, y0, z0), (x1, y1, z1) = old.solid.bounds().tolist()
-    top = pieces("top", strips((x0, x1), (y0, y1), hole_x, hole_y, (z0, z1), 0.002), old.finish)
-    return Shape(tuple(p for p in shape.base if p is not old) + top + basin, shape.movers)
+    top = pieces("top", solids.strips((x0, x1), (y0, y1), x, y, (z0, z1), 0.002), old.finish)
+    low, wall = rim - depth, 0.008
+    basin = pieces("bowl", [box(x, y, (low - wall, low)), *solids.walls(x, y, (low, rim), wall)], finish)
+    drain = revolve([(0.025, low), (0.022, low + 0.003)], 12, ((x[0] + x[1]) / 2, (y[0] + y[1]) / 2))
+    return Shape(tuple(p for p in shape.base if p is not old) + top + basin + pieces("drain", drain, "steel"), shape.movers)
 
 
 def sink_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -131,7 +111,7 @@ def sink_cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     shape = case((w, d, body), [Column(1, cells)], how)
     face = -d / 2 + max(reach(how.style.handle), how.nose)
     hole = around(min(0.3, 0.5 * w - 0.09)), (face + 0.09, d / 2 - 0.13)
-    shape = _sink_into_top(shape, *hole, bowl(*hole, body - 0.003, 0.17, "steel"))
+    shape = _sink_into_top(shape, *hole, body - 0.003, 0.17, "steel")
     return join_shapes(shape, tap(d / 2 - 0.065, body, h - body, 0.2, finishes.handle))
 
 
@@ -154,7 +134,7 @@ def vanity(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
         basin = _vessel(min(r * 1.2, 0.4 * w), r, (0.0, middle), (body, body + 0.12))
         return join_shapes(shape, Shape(basin), tap(d / 2 - 0.045, body, h - body, 0.13, finishes.handle))
     hole = around(min(0.26, 0.5 * w - 0.07)), (face + 0.06, d / 2 - 0.11)
-    shape = _sink_into_top(shape, *hole, bowl(*hole, body - 0.002, 0.13, "ceramic"))
+    shape = _sink_into_top(shape, *hole, body - 0.002, 0.13, "ceramic")
     return join_shapes(shape, tap(d / 2 - 0.055, body, h - body, 0.13, finishes.handle))
 
 
@@ -192,7 +172,7 @@ def toilet(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     wall = shell(outer, [oval(k, k, z) for k, z in ((0.42, 0.62 * rim), (0.76, rim))])
     heel, shelf = (around(0.27 * w), (cy + 0.3 * ry, d / 2 - 0.06)), (around(0.36 * w), (bowl_y[1] - 0.05, d / 2 - 0.012))
     outlines = [(heel, 0.0), (shelf, 0.8 * rim), (shelf, rim)]
-    bridge = hull(np.concatenate([at_height(rounded_rectangle(*spans, 0.04), z) for spans, z in outlines]))
+    bridge = solids.hull(np.concatenate([at_height(rounded_rectangle(*spans, 0.04), z) for spans, z in outlines]))
     half = (0.44 if form == "lever" else 0.5) * w  # a lever stands out of the tank's side
     base = pieces("bowl", [foot, neck], "ceramic") + staves("bowl", wall, "ceramic") + pieces("bridge", bridge, "ceramic")
     base += pieces("tank", cushion((-half, half), tank_y, (rim, h - 0.03), 0.025), "ceramic")
@@ -264,7 +244,7 @@ def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     """Build a tray with two glass walls, an open entrance at the front, a rail with a head and a mixer at the back wall."""
     tray, metal = 0.06, finishes.handle
     x, y, back = around(w / 2), around(d / 2), d / 2 - 0.05
-    basin = [box(x, y, (0, tray - 0.02), 0.003), *walls(x, y, (tray - 0.02, tray), 0.04)]
+    basin = [box(x, y, (0, tray - 0.02), 0.003), *solids.walls(x, y, (tray - 0.02, tray), 0.04)]
     side = -1 if rng.random() < 0.5 else 1
     pane = side * (w / 2 - 0.012)
     base = pieces("tray", basin, "ceramic")
@@ -318,11 +298,8 @@ def _door_lever(name: str, at: Axis3, outwards: float, side: float, finish: Mate
     turn = math.pi / 2 if outwards < 0 else -math.pi / 2
     rose = [s.rotate("x", turn).translate(at) for s in revolve([(0.024, 0.0005), (0.024, 0.007), (0.020, 0.009)], 16)]
     neck = [s.rotate("x", turn).translate(at) for s in revolve([(0.010, 0.009), (0.010, LEVER - 0.004)], 10)]
-    arm_x, arm_y = (
-        between(at[0] + side * 0.010, at[0] - side * 0.115),
-        between(at[1] + outwards * (LEVER - 0.016), at[1] + outwards * LEVER),
-    )
-    arm = box(arm_x, arm_y, around(0.010, at[2]), 0.003)
+    arm_y = between(at[1] + outwards * (LEVER - 0.016), at[1] + outwards * LEVER)
+    arm = box(between(at[0] + side * 0.010, at[0] - side * 0.115), arm_y, around(0.010, at[2]), 0.003)
     parts = pieces("rose", rose, finish) + pieces("lever", [*neck, arm], finish)
     axis = (0.0, -side, 0.0)
     return Mover(name, parts, "revolute", axis, at, math.radians(40), "hinge_handle", "handle", (0.0, outwards, 0.0), "leaf")

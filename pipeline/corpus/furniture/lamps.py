@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import band, curve, tube, turns
+from pipeline.corpus.furniture.bent import curve, tube, turns, wall
 from pipeline.corpus.furniture.finishes import PROFILES, Finish, Finishes, Material, cane, one_of, tint
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
@@ -72,7 +72,7 @@ def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
             continue
         middle = r1 + 0.5 * (r0 - r1)
         path = np.array([polar(middle * (0.965 if k % 2 else 1.0), a) for k, a in enumerate(turns(36))])
-        for stave in band(path, 0.005, (z0, z1), closed=True):
+        for stave in wall(path, 0.005, z0, z1, closed=True):
             grow = np.where(np.arange(8) < 4, r0, r1) / (0.5 * (r0 + r1))
             walls.append(Solid(stave.vertices * np.column_stack([grow, grow, np.ones(8)]), stave.faces).translate((*at, 0.0)))
     return walls

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, sheet, tube, turns, upright, wall
+from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, prism, sheet, tube, turns, wall
 from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of, tint
 from pipeline.corpus.furniture.intervals import Interval, around, between, corners, edges, inset, polar, split
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
@@ -65,7 +65,7 @@ def _wing(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fini
         px, span = s * (x - 0.5 * arm), between(s * x, s * (x - arm + 0.004))
         parts += pieces("arms", cushion(span, (-y + 0.05, back - 0.004), (seat - 0.098, top - roll + 0.01), 0.03, 2), cloth)
         parts += pieces("arms", rod((px, -y + 0.035, top), (px, back - 0.006, top), roll, n=14), cloth)
-        parts += pieces("wings", upright(side, between(s * (x - 0.005), s * (x - 0.06)), 0.018), cloth)
+        parts += pieces("wings", prism(side, "x", between(s * (x - 0.005), s * (x - 0.06)), 0.018), cloth)
     return parts
 
 

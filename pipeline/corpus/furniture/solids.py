@@ -61,10 +61,7 @@ class Solid:
 
     def bounds(self) -> NDArray[np.float64]:
         """Return the lower and upper corner (2, 3)."""
-        corners = np.empty((2, 3))
-        self.vertices.min(axis=0, out=corners[0])
-        self.vertices.max(axis=0, out=corners[1])
-        return corners
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
     def translate(self, offset: Vector) -> Solid:
         """Return the solid translated by `offset` (3,)."""
@@ -96,8 +93,7 @@ def merge_solids(solids: Sequence[Solid]) -> tuple[NDArray[np.float64], Topology
     """Return the solids as one: their vertices (V, 3) in a row, and the index arrays of all their faces."""
     shared = [topology(solid.faces) for solid in solids]
     vertices = np.concatenate([solid.vertices for solid in solids])
-    first = _offsets([len(solid.vertices) for solid in solids])
-    corner = _offsets([len(t.corners) for t in shared])
+    first, corner = (np.cumsum([0, *counts])[:-1] for counts in ([len(s.vertices) for s in solids], [len(t.corners) for t in shared]))
     return vertices, Topology(
         np.concatenate([t.corners + k for t, k in zip(shared, first, strict=True)]),
         np.concatenate([t.lengths for t in shared]),
@@ -105,10 +101,6 @@ def merge_solids(solids: Sequence[Solid]) -> tuple[NDArray[np.float64], Topology
         np.concatenate([t.following + k for t, k in zip(shared, corner, strict=True)]),
         np.concatenate([t.triangles + np.int32(k) for t, k in zip(shared, first, strict=True)]),
     )
-
-
-def _offsets(counts: Sequence[int]) -> list[int]:
-    return [0, *np.cumsum(counts[:-1]).tolist()]
 
 
 def normals(vertices: NDArray[np.float64], faces: Topology) -> NDArray[np.float64]:

@@ -57,8 +57,19 @@ def nightstand(rng: np.random.Generator, form: str, w: float, d: float, h: float
 def wardrobe(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build columns of doors with a rail behind, over drawers or beside shelves, or sliding doors on two tracks."""
     how = replace(case_style(rng, finishes, "plinth plinth square none", (0.08, 0.12)), board=0.02)
-    if form in ("sliding", "sliding_mirror"):
-        return _sliding_wardrobe(rng, form, w, d, h, finishes, how)
+    if form in ("sliding", "sliding_mirror"):  # leaves that pass each other between the sides
+        looks = replace(flush_front(how.style), handle="none", thickness=0.022)
+        looks = replace(looks, panel="mirror") if form == "sliding_mirror" else looks
+        how = replace(how, style=looks, inset=True, overhang=0.0, feet="plinth", feet_height=0.05, feet_finish=finishes.body)
+        columns = grid(1, Cell("slide", 1.0, int(rng.integers(2, 5))))
+    else:
+        columns = _wardrobe_columns(rng, form, w, h, how)
+    shape = case((w, d, h), columns, how)
+    return Shape(shape.base + _rails(shape, finishes), shape.movers)
+
+
+def _wardrobe_columns(rng: np.random.Generator, form: str, w: float, h: float, how: Case) -> list[Column]:
+    """Return columns of hinged doors: over drawers or before them, under boxes, with a mirror, or beside open shelves."""
     count = max(1, round(w / 0.95))
     inner = int(rng.integers(2, 4)) if form == "inner_drawers" else 0
     doors: tuple[Cell, ...] = (Cell("pair", 3.6, 1, inner=inner),)
@@ -75,18 +86,7 @@ def wardrobe(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
         columns.insert(int(rng.integers(0, 2)) * len(columns), shelves)
     elif w / count < 0.6:
         columns = [Column(1.0, (Cell("left", 3.6, 1), *doors[1:]))]
-    shape = case((w, d, h), columns, how)
-    return Shape(shape.base + _rails(shape, finishes), shape.movers)
-
-
-def _sliding_wardrobe(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes, how: Case) -> Shape:
-    """Build leaves that pass each other between the sides, plain or with mirrors."""
-    looks = replace(flush_front(how.style), handle="none", thickness=0.022)
-    if form == "sliding_mirror":
-        looks = replace(looks, panel="mirror")
-    how = replace(how, style=looks, inset=True, overhang=0.0, feet="plinth", feet_height=0.05, feet_finish=finishes.body)
-    shape = case((w, d, h), grid(1, Cell("slide", 1.0, int(rng.integers(2, 5)))), how)
-    return Shape(shape.base + _rails(shape, finishes), shape.movers)
+    return columns
 
 
 def _rails(shape: Shape, finishes: Finishes) -> Pieces:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.corpus.furniture.bent import arc, band, lathe, prism, turns
+from pipeline.corpus.furniture.bent import arc, lathe, prism, turns, wall
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case, grid
 from pipeline.corpus.furniture.finishes import Finish, Finishes, cane
 from pipeline.corpus.furniture.fronts import Rect, frame
@@ -164,7 +164,7 @@ def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: 
     if form == "drum":
         bow = arc((0.0, 0.0), 0.45 * w, -0.2 * math.pi, 1.2 * math.pi, 14)
         parts = pieces("top", slab(circle(w / 2, 32), (under, h), 0.004), material)
-        parts += pieces("wall", band(bow, 0.014, (0.02, under)), finishes.front)
+        parts += pieces("wall", wall(bow, 0.014, 0.02, under), finishes.front)
         parts += pieces("boards", slab(circle(0.44 * w, 28), (0.45 * h, 0.45 * h + 0.016)), finishes.body)
         return Shape(parts + pieces("foot", slab(circle(0.46 * w, 28), (0.0, 0.02), 0.003), finishes.body))
     if form == "tray":

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.corpus.furniture.bent import band
+from pipeline.corpus.furniture.bent import wall
 from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, COLORS, Finish, Finishes, Material, Pattern, cover, one_of, pick, tint
 from pipeline.corpus.furniture.intervals import Interval, around, inset, split
 from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
@@ -138,7 +138,7 @@ def _panel(start: float, end: float, d: float, h: float, cloth: Material) -> Pie
     folds = max(3, round(wide / 0.11))
     t = np.linspace(0, 1, 4 * folds + 1)
     path = np.column_stack([start + (end - start) * t, (0.5 * d - 0.004) * np.sin(2 * math.pi * folds * t)])
-    return pieces("cloth", band(path, 0.006, (0.0, h)), cloth)
+    return pieces("cloth", wall(path, 0.006, 0.0, h), cloth)
 
 
 def cushion_pillow(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:

@@ -17,7 +17,6 @@ from pipeline.corpus.furniture.finishes import Finish, Pattern
 from pipeline.corpus.furniture.shape import Piece
 from pipeline.corpus.furniture.solids import Topology
 from pipeline.rendering.palette import display
-from pipeline.style import Color
 
 Tones = NDArray[np.float64]
 SIDE = 512  # pixels of a pattern's master, which repeats
@@ -201,21 +200,13 @@ WHOLE = frozenset(_DRAWN)
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
-    """Where on the image a finish lies: lower left corner and size [pixels], from the lower left of the image."""
-
-    x: int
-    y: int
-    width: int
-    height: int
-
-
-@dataclass(frozen=True, slots=True)
 class Atlas:
-    """Fields of all finishes of a model on an image of `width` x `height` pixels; `scale` [pixels per metre]."""
+    """Fields of all finishes of a model, side by side at the bottom of an image of `width` x `height` pixels.
 
-    finishes: tuple[Finish, ...]
-    fields: tuple[Field, ...]
+    `fields` are (left edge, width, height) [pixels] by finish; `scale` [pixels per metre].
+    """
+
+    fields: Mapping[Finish, tuple[int, int, int]]
     width: int
     height: int
     scale: float
@@ -226,10 +217,8 @@ class Atlas:
         A face is seen along one axis, `side` (C,); the longer extent of its piece across that axis lies along the grain (v). Pieces lie
         at different places of their finish's field, by their place in the list.
         """
-        index = {finish: k for k, finish in enumerate(self.finishes)}
-        of = np.array([index[piece.finish] for piece in pieces])
-        whole, plain = (np.array([test(f.pattern) for f in self.finishes])[of] for test in (WHOLE.__contains__, "plain".__eq__))
-        field = np.array([(f.x, f.y, f.width, f.height) for f in self.fields], float)[of]
+        whole, plain = (np.array([test(p.finish.pattern) for p in pieces]) for test in (WHOLE.__contains__, "plain".__eq__))
+        field = np.array([self.fields[piece.finish] for piece in pieces], float)
         counts = [len(piece.solid.vertices) for piece in pieces]
         firsts = np.cumsum([0, *counts[:-1]])
         low = np.minimum.reduceat(points, firsts)
@@ -241,9 +230,9 @@ class Atlas:
             i, j = (a for a in range(3) if a != axis)
             along = ((extent[:, j] >= extent[:, i]) | whole)[:, None]
             axes[:, axis] = np.where(along, (i, j), (j, i))
-            room = field[:, 2:] - 2 * MARGIN - scale[:, None] * np.take_along_axis(extent, axes[:, axis], axis=1)
+            room = field[:, 1:] - 2 * MARGIN - scale[:, None] * np.take_along_axis(extent, axes[:, axis], axis=1)
             place = np.concatenate([number * GOLDEN + 0.3 * axis, number * GOLDEN**2 + 0.7 * axis], axis=1) % 1
-            starts[:, axis] = field[:, :2] + MARGIN + np.where(whole[:, None], 0.0, np.maximum(room, 0)) * place
+            starts[:, axis] = field[:, :1] * (1, 0) + MARGIN + np.where(whole[:, None], 0.0, np.maximum(room, 0)) * place
         piece = np.repeat(np.arange(len(pieces)), counts)[faces.corners]
         local = np.take_along_axis(points[faces.corners] - low[piece], axes[piece, side], axis=1) * scale[piece, None]
         return np.asarray((starts[piece, side] + local) / np.array([self.width, self.height]))
@@ -263,23 +252,23 @@ def atlas(pieces: Iterable[Piece]) -> Atlas:
     if patterned:
         room = LARGEST - len(reach) * (PLAIN + 2 * MARGIN)
         scale = min(scale, room / sum(float(s[0]) for s in patterned), room / max(float(s[1]) for s in patterned))
-    fields, x = [], 0
+    fields, x = {}, 0
     for finish, size in reach.items():
         w, h = (PLAIN, PLAIN) if finish.pattern == "plain" else (math.ceil(float(e) * scale) + 2 * MARGIN for e in size)
-        fields.append(Field(x, 0, w, h))
+        fields[finish] = (x, w, h)
         x += w
-    return Atlas(tuple(reach), tuple(fields), x, max(f.height for f in fields), scale)
+    return Atlas(fields, x, max(h for _, _, h in fields.values()), scale)
 
 
 def paint(rng: np.random.Generator, sheet: Atlas) -> bytes:
     """Return the atlas as the bytes of a PNG with a palette."""
     image = np.zeros((sheet.height, sheet.width), np.uint8)
-    shades = min(SHADES, 256 // len(sheet.finishes))
-    palette = np.zeros((shades * len(sheet.finishes), 3))
+    shades = min(SHADES, 256 // len(sheet.fields))
+    palette = np.zeros((shades * len(sheet.fields), 3))
     levels = np.linspace(0, 1, shades)
-    for k, (finish, field) in enumerate(zip(sheet.finishes, sheet.fields, strict=True)):
+    for k, (finish, (x, width, height)) in enumerate(sheet.fields.items()):
         palette[k * shades : (k + 1) * shades] = _colors(finish, levels)
-        spot = image[sheet.height - field.y - field.height : sheet.height - field.y, field.x : field.x + field.width]
+        spot = image[sheet.height - height :, x : x + width]
         if finish.pattern == "plain":
             spot[:] = k * shades + shades // 2
         else:
@@ -294,13 +283,6 @@ def _colors(finish: Finish, tones: NDArray[np.float64]) -> NDArray[np.float64]:
     if finish.second is not None:
         return np.asarray(color + tones[:, None] * (np.array(finish.second) - color))
     return np.asarray(color * (1 + CONTRAST[finish.pattern] * (2 * tones[:, None] - 1)))
-
-
-@functools.cache
-def srgb(color: Color) -> tuple[float, float, float]:
-    """Encode one colour."""
-    r, g, b = (round(float(v), 4) for v in display(np.array(color)))
-    return (r, g, b)
 
 
 def png(image: NDArray[np.uint8], palette: NDArray[np.uint8]) -> bytes:

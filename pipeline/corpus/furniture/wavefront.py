@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.finishes import Finish
 from pipeline.corpus.furniture.shape import Piece, Pieces
 from pipeline.corpus.furniture.solids import Face, Solid, Topology, merge_solids, normals, topology
-from pipeline.corpus.furniture.texture import Atlas, srgb
+from pipeline.corpus.furniture.texture import Atlas
+from pipeline.rendering.palette import display
 
 
 def mesh_frame(points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -119,7 +120,8 @@ def mtl(groups: Iterable[Group], texture: str) -> bytes:
     for group in groups:
         finish = group.finish
         gloss = 0.5 if finish.metallic else 0.1
-        lines += [f"newmtl {group.material}", "illum 2", "Ka 0 0 0", "Kd {:g} {:g} {:g}".format(*srgb(finish.color))]
+        color = np.round(display(np.array(finish.color)), 4)
+        lines += [f"newmtl {group.material}", "illum 2", "Ka 0 0 0", "Kd {:g} {:g} {:g}".format(*color)]
         shininess = min(900.0, max(1.0, 2 / finish.roughness**4 - 2))
         lines += [f"Ks {gloss:g} {gloss:g} {gloss:g}", f"Ns {shininess:.1f}", f"d {finish.opacity:g}"]
         if finish.metallic:

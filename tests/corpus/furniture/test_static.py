@@ -137,12 +137,12 @@ BENT = {
     "tube": bent.tube(bent.curve([(0, 0, 0), (0.1, 0, 0.3), (0, 0.2, 0.5)]), [0.02] * 8 + [0.01]),
     "right angle": bent.tube([(0, 0, 0), (0, 0.3, 0), (0, 0.3, 0.4), (0.3, 0.3, 0.4)], 0.012),
     "hoop": bent.tube(np.column_stack([bent.arc((0, 0), 0.5, 0, 2 * np.pi, 16)[:-1], np.zeros(16)]), 0.01, closed=True),
-    "band": bent.band(bent.arc((0, 0), 0.4, 0, 3, 8), 0.03, (0, 0.4)),
+    "band": bent.wall(bent.arc((0, 0), 0.4, 0, 3, 8), 0.03, 0, 0.4),
     "wall": bent.wall(bent.arc((0, 0), 0.4, 0, 3, 8), 0.06, 0.1, np.linspace(0.4, 0.7, 9), 0.03),
     "sheet": bent.sheet(bent.curve([(-0.2, 0.4), (0.1, 0.38), (0.2, 0.5), (0.25, 0.8)]), 0.012, 0.4),
     "leaf": bent.blades(np.zeros((3, 3)), np.array([(0, 0, 1.0), (1, 0, 0.2), (0, 0.3, -0.1)]), 0.1),
     "kite": bent.blades(np.zeros((2, 3)), np.array([(0, 0, 1.0), (1, 0, 0.2)]), 0.1, n=4),
-    "board": [bent.upright(np.array([(0, 0), (1, 0), (0.8, 0.6), (0.2, 0.6)]), (0, 0.03), 0.01)],
+    "board": [bent.prism(np.array([(0, 0), (1, 0), (0.8, 0.6), (0.2, 0.6)]), "x", (0, 0.03), 0.01)],
     "prism": [bent.prism(np.array([(0, 0), (1, 0), (0, 1.0)]), axis, (0, 0.1)) for axis in "xyz"],
     "pillow": [pillow((0, 0.5), (0, 0.5), (0, 0.15))],
     "crowned": [cushion((0, 0.5), (0, 0.6), (0, 0.15), 0.05, 3, 0.03), cushion((0, 0.1), (0, 0.6), (0, 0.15), 0.045, 3, 0.05)],
@@ -177,9 +177,9 @@ def test_texture_coordinates_keep_real_sizes_and_stay_in_their_field():
     pixels = sheet.uv(parts, vertices, shared, sides_of(normals(vertices, shared), shared)) * [sheet.width, sheet.height]
     owner = np.repeat(np.arange(len(parts)), [len(p.solid.vertices) for p in parts])[shared.corners]
     for number, part in enumerate(parts):
-        field, mine = sheet.fields[sheet.finishes.index(part.finish)], pixels[owner == number]
-        assert (mine >= [field.x, field.y]).all()
-        assert (mine <= [field.x + field.width, field.y + field.height]).all()
+        (left, width, height), mine = sheet.fields[part.finish], pixels[owner == number]
+        assert (mine >= [left, 0]).all()
+        assert (mine <= [left + width, height]).all()
     around = np.linalg.norm(pixels[shared.following] - pixels, axis=1)
     edges = vertices[shared.corners]
     assert np.allclose(around, sheet.scale * np.linalg.norm(edges[shared.following] - edges, axis=1))
