@@ -20,7 +20,7 @@ PROMPT = "a two-bedroom apartment with an open kitchen"
 def homes(count: int) -> None:
     """Make homes from the prior, in batches as `sfgen shard` does, and print CPU seconds by part."""
     from pipeline.homes.factory import open_factory
-    from pipeline.homes.outcomes import Outcome
+    from pipeline.homes.life import Outcome
     from pipeline.homes.request import Request
 
     factory = open_factory(ROOT, 17)

@@ -18,7 +18,7 @@ from pipeline.homes.empty_plan import require_sound
 from pipeline.homes.factory import open_factory
 from pipeline.homes.furniture_report import deliveries, report
 from pipeline.homes.jit_warmup import warm_up
-from pipeline.homes.outcomes import Empty
+from pipeline.homes.life import Empty
 from pipeline.homes.reproduction import header_of
 from pipeline.homes.request import Request
 from pipeline.manifest import digest

@@ -12,7 +12,7 @@ from pipeline.execution import Progress, Voice, cores
 from pipeline.homes.factory import open_factory
 from pipeline.homes.jit_warmup import warm_up_workers
 from pipeline.homes.library import MEMORY
-from pipeline.homes.outcomes import Empty
+from pipeline.homes.life import Empty
 from pipeline.homes.production import FAILURES, Recipe, Tally, fill
 from pipeline.homes.prompt_mix import orders, read_order
 from pipeline.homes.reproduction import header_of

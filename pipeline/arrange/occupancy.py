@@ -13,6 +13,7 @@ from pipeline.arrange.settings import SeparateSettings
 from pipeline.arrange.site import Site
 from pipeline.arrange.world import compose_pose, free_poses, make_world, put
 from pipeline.arrays import Floats
+from pipeline.entities.home import rectangle
 from pipeline.geometry.free_space import FreeSpace
 from pipeline.geometry.prisms import Prisms
 from pipeline.geometry.stance import stand_pose
@@ -60,11 +61,7 @@ class Occupancy:
 
     def outline(self, i: int) -> Floats:
         """Return the corners (4, 2) of the box of an object that stands [m]."""
-        w, d = self.items[i].half
-        x, y, _, yaw = self.poses[i]
-        c, s = np.cos(yaw), np.sin(yaw)
-        corners: Floats = np.array([[-w, -d], [w, -d], [w, d], [-w, d]]) @ np.array([[c, s], [-s, c]]) + (x, y)
-        return corners
+        return rectangle(self.items[i].half, self.poses[i, :2], self.poses[i, 3])
 
     def nearest(self, group: Group, poses: Floats, costs: Floats, among: NDArray[np.bool_] | None = None) -> tuple[Floats, float] | None:
         """Return the cheapest free pose of a group and its cost, whatever becomes of the floor; poses come cheapest first.

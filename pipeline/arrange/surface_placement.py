@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +14,7 @@ from pipeline.arrange.surfaces import HIGHEST, Surfaces, surfaces
 from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Placement
-from pipeline.geometry.contact import first_hits, group_boxes, wall_excesses
+from pipeline.geometry.contact import Groups, wall_excesses
 from pipeline.geometry.convex import hull
 from pipeline.geometry.kinematics import moved_links, rotation
 from pipeline.geometry.memo import cached_on_asset
@@ -27,44 +26,6 @@ HEADROOM = 0.01  # above what a drawer carries [m]: a bottle that fits to the mi
 STEADY = 0.7  # of what rides in a drawer: the way from below its centre of mass to the edge of its foot, as a share of that one's height. By dry friction it then slides before it tips
 FOOT = 0.002  # [m] above its lowest point: what is lower is its foot
 WOBBLE = 0.1  # spread of the yaw of what has a front [rad]
-
-
-@dataclass(frozen=True, slots=True)
-class Groups:
-    """Prisms in the world; those of group g are `start[g]` .. `start[g + 1]`; `flat` (P, 4) and `boxes` (G, 6) bound them."""
-
-    prisms: Prisms
-    start: NDArray[np.int64]
-    flat: Floats
-    boxes: Floats
-
-    @classmethod
-    def of(cls, groups: Sequence[Prisms]) -> Groups:
-        """Join groups."""
-        start = np.concatenate([[0], np.cumsum([len(g) for g in groups], dtype=np.int64)]).astype(np.int64)
-        prisms = join_prisms(list(groups))
-        return cls(prisms, start, prisms.boxes(), group_boxes(prisms, start))
-
-    def plus(self, groups: Sequence[Prisms]) -> Groups:
-        """Return the groups and some more."""
-        more = Groups.of(groups)
-        start = np.concatenate([self.start, self.start[-1] + more.start[1:]])
-        flat, boxes = np.concatenate([self.flat, more.flat]), np.concatenate([self.boxes, more.boxes])
-        return Groups(join_prisms([self.prisms, more.prisms]), start, flat, boxes)
-
-    def hit(self, moved: Prisms, touch: float, without: Sequence[int] = ()) -> bool:
-        """Tell whether prisms touch any group, some left out."""
-        boxes = self.boxes
-        if len(without):
-            boxes = boxes.copy()
-            boxes[list(without)] = (*[np.inf] * 3, *[-np.inf] * 3)
-        if not len(self.prisms) or not len(moved):
-            return False
-        p, alone = self.prisms, np.full(len(moved), -1)
-        hits = first_hits(
-            moved.corners, moved.count, moved.z, moved.boxes(), alone, p.corners, p.count, p.z, self.flat, self.start, boxes, touch
-        )
-        return bool((hits >= 0).any())
 
 
 class SurfacePlacement:
@@ -122,10 +83,9 @@ class SurfacePlacement:
         """Draw (surface, x, y) at which the thing lies wholly on a surface, object frame of the support."""
         if not len(support_surfaces):
             return []
-        low, high = _reach(size, turn)
-        margin = self.settings.margin
-        first = support_surfaces.tops[:, :2] * support.scale[:2] - low + margin
-        last = support_surfaces.tops[:, 2:4] * support.scale[:2] - high - margin
+        half, margin = _half_extents(size, turn), self.settings.margin
+        first = support_surfaces.tops[:, :2] * support.scale[:2] + half + margin
+        last = support_surfaces.tops[:, 2:4] * support.scale[:2] - half - margin
         open_weight = _within_reach(support_surfaces, support)
         weight = np.where(support_surfaces.hidden, self.settings.hidden, open_weight) * (last >= first).all(1)
         if weight.sum() <= 0:
@@ -139,10 +99,11 @@ class SurfacePlacement:
     @staticmethod
     def _middles(support_surfaces: Surfaces, support: Placement, size: Floats, turn: float) -> list[tuple[int, float, float]]:
         """Return (surface, x, y) of the middles of the open surfaces that are wide enough, the highest first."""
-        low, high = _reach(size, turn)
         extent = (support_surfaces.tops[:, 2:4] - support_surfaces.tops[:, :2]) * support.scale[:2]
         middle = (support_surfaces.tops[:, 2:4] + support_surfaces.tops[:, :2]) * support.scale[:2] / 2
-        fits = np.flatnonzero((extent >= high - low).all(1) & ~support_surfaces.hidden & _within_reach(support_surfaces, support))
+        fits = np.flatnonzero(
+            (extent >= 2 * _half_extents(size, turn)).all(1) & ~support_surfaces.hidden & _within_reach(support_surfaces, support)
+        )
         return [
             (int(k), float(middle[k, 0]), float(middle[k, 1])) for k in fits[np.argsort(-support_surfaces.tops[fits, 4], kind="stable")]
         ]
@@ -209,13 +170,12 @@ def steady(asset: Asset) -> float:
     return float((within / np.linalg.norm(along, axis=1)).min() / max(z - low, FOOT))
 
 
-def _reach(size: Floats, turn: float) -> tuple[Floats, Floats]:
-    """Return the corners (2,), (2,) of the box around a footprint turned by `turn` about its middle."""
+def _half_extents(size: Floats, turn: float) -> Floats:
+    """Return half the extents (2,) of the box around a footprint turned by `turn` about its middle."""
     c, s = abs(math.cos(turn)), abs(math.sin(turn))
-    half = np.array([c * size[0] + s * size[1], s * size[0] + c * size[1]]) / 2
-    return -half, half
+    return np.array([c * size[0] + s * size[1], s * size[0] + c * size[1]]) / 2
 
 
 def _box(size: Floats, at: tuple[float, float, float], turn: float, margin: float) -> Floats:
-    low, high = _reach(size, turn)
-    return np.array([[*(np.array(at[:2]) + low - margin), at[2] - margin], [*(np.array(at[:2]) + high + margin), at[2] + size[2] + margin]])
+    half, middle = _half_extents(size, turn), np.array(at[:2])
+    return np.array([[*(middle - half - margin), at[2] - margin], [*(middle + half + margin), at[2] + size[2] + margin]])

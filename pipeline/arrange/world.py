@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pipeline.arrange.shapes import Shape
 from pipeline.arrays import Floats, Ints
 from pipeline.geometry.compiled import borrowing, compiled
-from pipeline.geometry.contact import depth
+from pipeline.geometry.contact import apart, depth
 from pipeline.geometry.polygons import beyond
 from pipeline.geometry.prisms import Prisms, join_prisms
 
@@ -120,11 +120,7 @@ def meet(world: World, a0: int, a1: int, b0: int, b1: int, tolerance: float) -> 
     flat, at_z = world.flat, world.at_z
     for i in range(a0, a1):
         for j in range(b0, b1):
-            if min(flat[i, 2], flat[j, 2]) - max(flat[i, 0], flat[j, 0]) <= tolerance:
-                continue
-            if min(flat[i, 3], flat[j, 3]) - max(flat[i, 1], flat[j, 1]) <= tolerance:
-                continue
-            if min(at_z[i, 1], at_z[j, 1]) - max(at_z[i, 0], at_z[j, 0]) <= tolerance:
+            if apart(flat[i], flat[j], tolerance) or apart(at_z[i], at_z[j], tolerance):
                 continue
             if depth(world.at[i, : world.corner_count[i]], at_z[i], world.at[j, : world.corner_count[j]], at_z[j]) > tolerance:
                 return True
@@ -135,18 +131,12 @@ def meet(world: World, a0: int, a1: int, b0: int, b1: int, tolerance: float) -> 
 def collide(world: World, i: int, j: int, tolerance: float) -> bool:
     """Tell whether two placed objects break a hard rule: a body in the other's body or where its parts move."""
     a, b, box, flat = world.start[i], world.start[j], world.box, world.flat
-    if _apart(box[i], box[j], tolerance):
+    if apart(box[i], box[j], tolerance):
         return False
     for k in range(a[0], a[2]):  # bodies and keeps lie one behind the other
-        if not _apart(flat[k], box[j], tolerance) and meet(world, k, k + 1, b[0], b[2] if k < a[1] else b[1], tolerance):
+        if not apart(flat[k], box[j], tolerance) and meet(world, k, k + 1, b[0], b[2] if k < a[1] else b[1], tolerance):
             return True
     return False
-
-
-@borrowing
-def _apart(a: Floats, b: Floats, tolerance: float) -> bool:
-    """Tell whether two boxes in plan (4,) share at most `tolerance` along some axis."""
-    return bool(min(a[2], b[2]) - max(a[0], b[0]) <= tolerance or min(a[3], b[3]) - max(a[1], b[1]) <= tolerance)
 
 
 @borrowing

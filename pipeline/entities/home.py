@@ -8,6 +8,13 @@ from numpy.typing import NDArray
 from pipeline.entities.plan import Plan
 
 
+def rectangle(half: NDArray[np.float64], middle: NDArray[np.float64], yaw: float) -> NDArray[np.float64]:
+    """Return the corners (4, 2) of a rectangle of half extents (2,) about its middle (2,), counter-clockwise from its lower left at yaw 0."""
+    c, s = np.cos(yaw), np.sin(yaw)
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half
+    return np.ascontiguousarray(corners @ np.array([[c, s], [-s, c]]) + middle)
+
+
 @dataclass(frozen=True, slots=True)
 class Placement:
     """A placed asset.
@@ -33,11 +40,7 @@ class Placement:
 
     def footprint(self) -> NDArray[np.float64]:
         """Return the corners (4, 2) of the box in plan, counter-clockwise [m, world]."""
-        w, d = self.size[0] / 2, self.size[1] / 2
-        corners = np.array([[-w, -d], [w, -d], [w, d], [-w, d]])
-        c, s = np.cos(self.yaw), np.sin(self.yaw)
-        placed: NDArray[np.float64] = corners @ np.array([[c, s], [-s, c]]) + self.position[:2]
-        return placed
+        return rectangle(self.size[:2] / 2, self.position[:2], self.yaw)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ import numpy as np
 
 from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset
-from pipeline.geometry.contact import first_hits, group_boxes
+from pipeline.geometry.contact import Groups
 from pipeline.geometry.kinematics import OPENERS, joint_motion, joint_range, link_points, moved_links, sweep_box
 from pipeline.geometry.prisms import Prisms, join_prisms, prism, sweep_of
 
@@ -50,9 +50,9 @@ def find_prerequisites(asset: Asset) -> list[tuple[int, ...]]:
             ):
                 continue
             sweep = sweep if sweep is not None else sweep_of(asset, k).prisms
-            at_rest, opened = (_links(asset, moved[i], joint_motion(other, q)) for q in (0.0, joint_range(other)[1]))
+            at_rest, opened = (Groups.of([_links(asset, moved[i], joint_motion(other, q))]) for q in (0.0, joint_range(other)[1]))
             own = _links(asset, moved[k], np.eye(4))
-            if _meet(sweep, at_rest) and not _meet(own, at_rest) and not _meet(sweep, opened):
+            if at_rest.hit(sweep, TOUCH) and not at_rest.hit(own, TOUCH) and not opened.hit(sweep, TOUCH):
                 prerequisites[k].add(i)
     return [tuple(sorted(i for i in own if k not in prerequisites[i])) for k, own in enumerate(prerequisites)]
 
@@ -62,10 +62,3 @@ def _links(asset: Asset, links: Sequence[int], T: Floats) -> Prisms:
     meshes = [m for i in links for m in (asset.links[i].colliders or asset.links[i].visuals)]
     prisms = (prism(np.asarray(m.vertices, np.float64) @ T[:3, :3].T + T[:3, 3]) for m in meshes)
     return join_prisms([p for p in prisms if p is not None])
-
-
-def _meet(a: Prisms, b: Prisms) -> bool:
-    start = np.array([0, len(b)])
-    alone = np.full(len(a), -1)
-    hits = first_hits(a.corners, a.count, a.z, a.boxes(), alone, b.corners, b.count, b.z, b.boxes(), start, group_boxes(b, start), TOUCH)
-    return bool((hits >= 0).any())

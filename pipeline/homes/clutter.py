@@ -12,7 +12,7 @@ from pipeline.arrange import Hanging, SurfacePlacement, ThingsSettings
 from pipeline.arrange.walls import EdgeOpening
 from pipeline.arrays import Floats
 from pipeline.card import Hangs, cards
-from pipeline.entities.home import Home, Placement
+from pipeline.entities.home import Home, Placement, rectangle
 from pipeline.entities.plan import Room
 from pipeline.floorplan.program.floor_program import Furniture
 from pipeline.floorplan.program.furniture import LAID
@@ -242,11 +242,8 @@ def lay_rug(
     blocked = [p.footprint() for p in clear]
     for x, y, yaw in places:
         for share in SHARES:
-            c, s = math.cos(yaw), math.sin(yaw)
-            half = share * size[:2] / 2
-            corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half
-            outline = np.ascontiguousarray(corners @ np.array([[c, s], [-s, c]]) + (x, y))
-            wider = np.ascontiguousarray((corners + np.sign(corners) * EDGE) @ np.array([[c, s], [-s, c]]) + (x, y))
-            if excess(wider, polygon) <= 1e-6 and all(gap(outline, other) > 0 for other in blocked):
-                return np.array([x, y]), yaw, np.array([share, share, THICK / size[2]])
+            half, middle = share * size[:2] / 2, np.array([x, y])
+            outline = rectangle(half, middle, yaw)
+            if excess(rectangle(half + EDGE, middle, yaw), polygon) <= 1e-6 and all(gap(outline, other) > 0 for other in blocked):
+                return middle, yaw, np.array([share, share, THICK / size[2]])
     return None

@@ -13,7 +13,7 @@ from pipeline.homes.furnish import Draft, taste_of
 from pipeline.homes.planning import PlannedHome, room_jobs
 from pipeline.homes.request import Request
 from pipeline.homes.resources import Resources
-from pipeline.homes.rows import Row, homes_of, object_row, opening_row, reject_row, room_row, scene_row
+from pipeline.homes.rows import Row, homes_of, reject_row, unjudged_rows
 from pipeline.shards import scene_id
 from schemas import OBJECTS, OPENINGS, REJECTS, ROOMS, SCENES
 
@@ -28,19 +28,8 @@ def draft_rows(drafts: Iterable[PlannedHome], seed: int, assets: Mapping[str, As
         name = scene_id(seed, home_draft.request.index)
         placed = tuple(p for draft in home_draft.drafts for p in draft.placements)
         home = Home(name, seed, home_draft.request.index, home_draft.prompt, home_draft.program, home_draft.plan, placed)
-        openable = {p.object_id: assets[p.asset_id].openable for p in placed}
-        kinds = {draft.job.room_id: draft for draft in home_draft.drafts}
-        rows["scenes"].append(scene_row(home) | {"openable": sum(openable.values())})
-        for room in home_draft.plan.rooms:
-            draft = kinds.get(room.room_id)
-            row = room_row(name, room, draft.job.layout_type if draft else None)
-            if draft:
-                count = sum(openable[p.object_id] for p in draft.placements)
-                row |= {"objects": len(draft.placements), "openable": count, "openable_sampled": count}
-                row |= {"asked_objects": draft.job.count, "walkable_target": draft.job.walkable}
-            rows["rooms"].append(row)
-        rows["openings"] += [opening_row(name, opening) for opening in home_draft.plan.openings]
-        rows["objects"] += [object_row(name, p, openable=openable[p.object_id]) for p in placed]
+        for table, own in unjudged_rows(home, {draft.job.room_id: draft for draft in home_draft.drafts}, assets).items():
+            rows[table] += own
         for draft in home_draft.drafts:
             rows["rejects"] += [reject_row(name, draft.job.room_id, draft.job.attempt, ("object", NO_ASSET, lost)) for lost in draft.lost]
     return rows

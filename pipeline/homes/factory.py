@@ -22,15 +22,13 @@ from pipeline.floorplan.program.priors import PriorSettings
 from pipeline.homes.asset_cache import AssetCache
 from pipeline.homes.furnish import draft_rooms
 from pipeline.homes.library import MEMORY, Library, kept_within
-from pipeline.homes.life import make_homes
-from pipeline.homes.outcomes import Empty, Outcome
+from pipeline.homes.life import Empty, Outcome, make_homes
 from pipeline.homes.planning import PlannedHome, plan_home
 from pipeline.homes.request import Request
 from pipeline.homes.resources import Resources, ShardSettings
 from pipeline.manifest import digest, sha256_file
 from pipeline.relations.model import Relations
-from pipeline.retrieval.index import AssetIndex
-from pipeline.retrieval.settings import RetrievalSettings
+from pipeline.retrieval.index import AssetIndex, RetrievalSettings
 from pipeline.shards import code_digest
 from pipeline.verify import VerifySettings
 from schemas import LATENTS

@@ -11,10 +11,11 @@ The budgets are those of ShardSettings: tries of a room, plans of a home, CPU se
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
-from pipeline import seeds, taxonomy
+from pipeline import seeds
+from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan
 from pipeline.errors import ContentError, RefusedError, SfgenError
@@ -22,17 +23,48 @@ from pipeline.execution import tell
 from pipeline.homes.clutter import small_things, unlaid
 from pipeline.homes.empty_plan import closed_rooms
 from pipeline.homes.furnish import Draft, draft_rooms
-from pipeline.homes.outcomes import Empty, Outcome, files_of
 from pipeline.homes.planning import PlannedHome, plan_home
 from pipeline.homes.request import Request, RoomJob
 from pipeline.homes.resources import Resources
 from pipeline.homes.room_finishing import RoomResult, finish
-from pipeline.homes.rows import BEST, Row, home_rows, reject_row
+from pipeline.homes.rows import BEST, REASONS, Row, home_rows, reject_row
 from pipeline.homes.violations import Violation, violations
-from pipeline.shards import scene_id
+from pipeline.preview.top import top_view
+from pipeline.rendering.png import png
+from pipeline.shards import EMPTY, scene_id
+from pipeline.usd.home import home_layer
+from pipeline.usd.layer import crate
+from pipeline.usd.mujoco import home_overlay
 from pipeline.verify import Certificate, verify_home
 
+LIBRARY = "../../assets"  # as seen from usd/shard-00000/
 WISHES = frozenset({"count_missed", "category_missed", "openable_missed", "walkable_missed"})  # reasons that a request cannot be met
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """A home that ships. `rows` by table, `files` by `<family>/<name>`."""
+
+    home: Home
+    certificate: Certificate
+    rows: dict[str, list[Row]]
+    files: dict[str, bytes]
+
+
+@dataclass(frozen=True, slots=True)
+class Empty:
+    """A home that could not be made: the reason code, what a user is told, and the rows of what was tried."""
+
+    index: int
+    reason: str
+    error: SfgenError
+    rejects: list[Row] = field(default_factory=list)
+
+    def rows(self, seed: int) -> dict[str, list[Row]]:
+        """Return the rows of rejects. Raises KeyError for a code that REASONS lacks."""
+        REASONS[self.reason]  # a typo must not reach the table
+        detail = " ".join(str(self.error).split())[:400]
+        return {"rejects": [*self.rejects, {"what": EMPTY, "where": scene_id(seed, self.index), "reason": self.reason, "detail": detail}]}
 
 
 class State(Enum):
@@ -250,11 +282,22 @@ class HomeLife:
             with r.time("export"):
                 exported = files_of(home, r.library, r.shard.preview)
         results = {k: room.best for k, room in self.rooms.items() if room.best}
-        rows = home_rows(home, self.certificate, results, r.library, taxonomy.load(), self.tries, r.shard.licence)
+        drafts = {k: best.draft for k, best in results.items()}
+        rows = home_rows(home, self.certificate, drafts, r.library, self.tries, r.shard.licence)
         failed = [(best.draft.job, ("room", BEST, f"{best.failure}: {best.detail}")) for best in results.values() if best.failure]
         rows["rejects"] = self.rejects + [self._reject(job, reject) for job, reject in failed]
         tell("made", home.index)
         return Outcome(home, self.certificate, rows, exported)
+
+
+def files_of(home: Home, assets: Mapping[str, Asset], preview: int) -> dict[str, bytes]:
+    """Return the USD stage, its MuJoCo overlay and the preview of a home by `<family>/<name>`; `preview` is the side of the top view [px], 0 for none."""
+    stage, name = home_layer(home, assets, LIBRARY), f"usd/{home.scene_id}"
+    overlay = home_overlay(stage, f"{home.scene_id}.usdc")
+    files = {f"{name}.usdc": crate(stage), f"{name}.mujoco.usda": overlay.ExportToString().encode()}
+    if preview:
+        files[f"previews/{home.scene_id}.png"] = png(top_view(home, assets, preview))
+    return files
 
 
 def make_homes(

@@ -19,7 +19,7 @@ from pipeline import tables
 from pipeline.errors import ContentError, SfgenError
 from pipeline.execution import Lost, Progress, map_divisible
 from pipeline.homes.factory import Factory, forget_factory
-from pipeline.homes.outcomes import Empty, Outcome
+from pipeline.homes.life import Empty, Outcome
 from pipeline.homes.planning import PlannedHome
 from pipeline.homes.reproduction import made_with
 from pipeline.homes.request import Request

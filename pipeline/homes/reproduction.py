@@ -12,7 +12,7 @@ from numpy.lib.introspect import opt_func_info
 
 from pipeline import tables
 from pipeline.homes.factory import Factory
-from pipeline.homes.outcomes import Empty
+from pipeline.homes.life import Empty
 from pipeline.homes.request import Request
 from pipeline.shards import TABLES, Header, gather, scene_id
 from pipeline.shards.layout import table_path

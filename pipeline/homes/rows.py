@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from pipeline import taxonomy
 from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Opening, Plan, Room, Swing
 from pipeline.entities.reason import reasons
+from pipeline.homes.furnish import Draft
 from pipeline.homes.request import layout_type
-from pipeline.homes.room_finishing import RoomResult
 from pipeline.manifest import sha256
-from pipeline.taxonomy import Taxonomy
 from pipeline.verify import Certificate
 
 Row = dict[str, Any]
@@ -99,36 +99,37 @@ def reject_row(scene_id: str, room_id: str, attempt: int, reject: tuple[str, str
     return {"what": what, "where": f"{where}#{attempt}", "reason": reason, "detail": detail}
 
 
-def home_rows(
-    home: Home,
-    certificate: Certificate,
-    results: Mapping[str, RoomResult],
-    assets: Mapping[str, Asset],
-    taxonomy: Taxonomy,
-    tries: int,
-    licence: str,
-) -> dict[str, list[Row]]:
-    """Return a finished home's rows by table; `tries` counts the tries of its rooms."""
+def unjudged_rows(home: Home, drafts: Mapping[str, Draft], assets: Mapping[str, Asset]) -> dict[str, list[Row]]:
+    """Return a home's rows by table, without what only the judge knows; `drafts` are those of its rooms, by room id."""
+    known = taxonomy.load()
     openable = {p.object_id: assets[p.asset_id].openable for p in home.placements}
-    figures, small = certificate.room_figures(), taxonomy.small
     rooms = []
     for room in home.plan.rooms:
-        row = room_row(home.scene_id, room, layout_type(room, home.plan, taxonomy)) | figures[room.room_id]
-        mine = [p for p in home.in_room(room.room_id) if p.category not in small]
+        mine = [p for p in home.in_room(room.room_id) if p.category not in known.small]
+        row = room_row(home.scene_id, room, layout_type(room, home.plan, known))
         row |= {"objects": len(mine), "openable": sum(openable[p.object_id] for p in mine)}
-        if room.room_id in results:
-            draft = results[room.room_id].draft
+        if draft := drafts.get(room.room_id):
             sampled = sum(assets[p.asset_id].openable for p in draft.placements)
             row |= {"asked_objects": draft.job.count, "walkable_target": draft.job.walkable, "openable_sampled": sampled}
         rooms.append(row)
-    own = {"objects": sum(p.category not in small for p in home.placements), "attempts": tries, "licence": licence}
+    counts = {"objects": sum(p.category not in known.small for p in home.placements), "openable": sum(openable.values())}
     return {
-        "scenes": [scene_row(home) | certificate.scene_figures() | own | {"usd": f"usd/{home.scene_id}.usdc"}],
+        "scenes": [scene_row(home) | counts],
         "rooms": rooms,
         "openings": [opening_row(home.scene_id, opening) for opening in home.plan.openings],
         "objects": [object_row(home.scene_id, p, openable=openable[p.object_id]) for p in home.placements],
-        "joints": certificate.joint_rows(),
     }
+
+
+def home_rows(
+    home: Home, certificate: Certificate, drafts: Mapping[str, Draft], assets: Mapping[str, Asset], tries: int, licence: str
+) -> dict[str, list[Row]]:
+    """Return a finished home's rows by table; `tries` counts the tries of its rooms."""
+    rows, figures = unjudged_rows(home, drafts, assets), certificate.room_figures()
+    for row in rows["rooms"]:
+        row.update(figures[row["room_id"]])
+    rows["scenes"][0] |= certificate.scene_figures() | {"attempts": tries, "licence": licence, "usd": f"usd/{home.scene_id}.usdc"}
+    return rows | {"joints": certificate.joint_rows()}
 
 
 def scene_row(home: Home) -> Row:

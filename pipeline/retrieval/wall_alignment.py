@@ -14,23 +14,16 @@ SQUARE = 0.05  # boxes turned to each other by less than this, or by so much mor
 ROUNDS = 8  # over all pairs: who is moved may meet the next
 
 
-def keep_at_walls(
-    position: Floats,
-    yaw: float,
-    asked: Floats,
-    size: Floats,
-    polygon: Floats,
-    reach: float = REACH,
-) -> Floats:
+def keep_at_walls(position: Floats, yaw: float, asked: Floats, size: Floats, polygon: Floats) -> Floats:
     """Return the position (3,) [m] at which a box of `size` keeps the asked box's sides that lie at walls.
 
     `position` is the asked bottom centre, `asked` and `size` (3,) are full extents [m], `polygon` (n, 2) the room in the
-    same frame. Along each horizontal axis of the object, the side that is within `reach` of a wall parallel to it stays;
-    with a wall at both sides or none the centre stays. A gap left by the model below `reach` is thus kept as it is.
+    same frame. Along each horizontal axis of the object, the side that is within REACH of a wall parallel to it stays;
+    with a wall at both sides or none the centre stays. A gap left by the model below REACH is thus kept as it is.
     """
     moved = np.array(position, float)
     for extent, axis in enumerate(_axes(yaw)):
-        near = [abs(gap_to_wall(position[:2] + sign * axis * asked[extent] / 2, sign * axis, polygon, BEYOND)) < reach for sign in (1, -1)]
+        near = [abs(gap_to_wall(position[:2] + sign * axis * asked[extent] / 2, sign * axis, polygon, BEYOND)) < REACH for sign in (1, -1)]
         moved[:2] += axis * (asked[extent] - size[extent]) / 2 * (int(near[0]) - int(near[1]))
     return moved
 

@@ -15,7 +15,7 @@ import made
 import sfgen
 from pipeline.entities.plan import Plan, Room
 from pipeline.errors import ContentError, RefusedError
-from pipeline.homes.outcomes import Empty
+from pipeline.homes.life import Empty
 from pipeline.shards import scene_id
 from sfgen import cli
 

@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline import taxonomy
 from pipeline.entities.home import Placement
-from pipeline.homes.outcomes import files_of
+from pipeline.homes.life import files_of
 from pipeline.homes.rows import home_rows
 from pipeline.shards import Header, add_part, commit_shard, gather, open_or_create
 from pipeline.usd.library import write_asset
@@ -48,7 +47,7 @@ class Shelf:
 def fill(folder):
     """Write the dataset."""
     home, assets = made()
-    rows = home_rows(home, verify_home(home, assets, SETTINGS), {}, assets, taxonomy.load(), 1, HEADER.licence)
+    rows = home_rows(home, verify_home(home, assets, SETTINGS), {}, assets, 1, HEADER.licence)
     with open_or_create(folder, HEADER, Shelf(folder.parent / "shelf", assets)) as dataset:
         add_part(dataset, 0, gather(0, {**rows, "rejects": []}, files_of(home, assets, 0)))
         commit_shard(dataset, 0)

@@ -11,7 +11,7 @@ from pipeline.floorplan.imports import program_of, read_own_json
 from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.wishes import with_wishes
 from pipeline.homes.furniture_report import deliveries, report
-from pipeline.homes.outcomes import Empty
+from pipeline.homes.life import Empty
 from pipeline.homes.planning import told_count
 from pipeline.homes.request import Request
 from pipeline.seeds import generator

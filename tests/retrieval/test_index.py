@@ -3,8 +3,7 @@ import pytest
 
 from pipeline import seeds
 from pipeline.errors import ContentError
-from pipeline.retrieval.index import AssetIndex
-from pipeline.retrieval.settings import RetrievalSettings
+from pipeline.retrieval.index import AssetIndex, RetrievalSettings
 from pipeline.retrieval.taste import Taste, tasteful
 
 SHELVES = {"cabinet": 30, "dining_chair": 12, "bathtub": 1}
