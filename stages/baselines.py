@@ -14,14 +14,12 @@ from tqdm import tqdm
 
 from pipeline import params
 from pipeline.baselines import ours
-from pipeline.baselines.furnish import BASELINES, furnish
-from pipeline.baselines.job import NETS, Job, open_job, trainer
+from pipeline.baselines.job import BASELINES, NETS, Job, Trainer, furnish, open_job, train, trainer
 from pipeline.baselines.settings import BaselineSettings
-from pipeline.baselines.training import Trainer, train
 from pipeline.diffusion.settings import SampleSettings, TrainSettings
 from pipeline.entry import run
 from pipeline.experiments.baselines import cases_of, compare_models
-from pipeline.experiments.settings import MetricsSettings
+from pipeline.experiments.paper_tables import MetricsSettings
 from pipeline.manifest import write_json
 from pipeline.relations.model import Relations
 

@@ -20,9 +20,8 @@ from pipeline.execution import cores
 from pipeline.features import net as nets
 from pipeline.features.training import Examples, train
 from pipeline.metrics.layout_features import summaries
-from pipeline.metrics.perturbations import HARMS
 from pipeline.metrics.relations import furniture
-from pipeline.metrics.views import STATES, views_of
+from pipeline.metrics.views import HARMS, STATES, views_of
 from pipeline.relations.arrangement import Arrangement, rooms_of
 
 ROOMS = 30_000  # training rooms at most, each as it is and with each harm

@@ -52,19 +52,13 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
     """Train, validate, log and save; write the weights and what the stage reports."""
     trainer = job.trainer
 
-    def save(state: Trainer) -> None:
-        job.checkpoint.save(state.done, state.groups())
-
-    def validate() -> dict[str, dict[str, float]]:
-        return validation(trainer, job.checked)
-
     by_level: dict[str, dict[str, float]] = {}
     with live_log(root, trainer.done) as log, tqdm(total=trainer.total, initial=trainer.done, desc="train", unit="step") as bar:
-        for step in train(trainer, job.data, save):
+        for step in train(trainer, job.data, job.checkpoint):
             bar.update()
             last = step.done == trainer.total
             if step.done % settings.validate_every == 0 or last:
-                by_level = validate()
+                by_level = validation(trainer, job.checked)
             if step.done % 10 == 0 or last:
                 bar.set_postfix(loss=f"{step.loss:.3f}", geometry=f"{step.geometry:.3f}", refresh=False)
                 log(step, by_level)
@@ -72,7 +66,7 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
     inventory = fit(job.inventory, contents, trainer.settings.inventory, trainer.seed, *kept)
     save_weights(root / WEIGHTS, job.header, {"denoiser": trainer.average, "inventory": inventory})
     job.inventory_checkpoint.remove()
-    write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or validate()))
+    write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or validation(trainer, job.checked)))
 
 
 def report(sets: Sets, trainer: Trainer, by_level: dict[str, dict[str, float]]) -> dict[str, Any]:

@@ -13,8 +13,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from pipeline.baselines.rooms import BOX, Furniture, Outlines
-from pipeline.baselines.scaling import Scaling
+from pipeline.baselines.rooms import BOX, Furniture, Outlines, Scaling
 from pipeline.baselines.settings import BaselineSettings
 from pipeline.baselines.transformer import Block, FloorEncoder, sines
 

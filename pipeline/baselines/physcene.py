@@ -16,8 +16,7 @@ from torch import Tensor
 from pipeline.arrays import Floats
 from pipeline.baselines import reachability
 from pipeline.baselines.boxes import Boxes, boxes_of, extend_front, iou, mates, overlaps
-from pipeline.baselines.rooms import BOX
-from pipeline.baselines.scaling import Scaling
+from pipeline.baselines.rooms import BOX, Scaling
 
 BELOW = 10  # of T = 1000
 CLIP = 0.1  # largest change of a channel in one step

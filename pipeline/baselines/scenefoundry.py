@@ -16,8 +16,7 @@ from torch import Tensor
 
 from pipeline.baselines.boxes import boxes_of, extend_front, mates, overlaps
 from pipeline.baselines.diffuscene import Denoiser, add_noise, clean, denoising
-from pipeline.baselines.rooms import BOX, Furniture, Outlines
-from pipeline.baselines.scaling import Scaling
+from pipeline.baselines.rooms import BOX, Furniture, Outlines, Scaling
 from pipeline.baselines.settings import BaselineSettings
 
 

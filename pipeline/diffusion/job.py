@@ -61,8 +61,7 @@ def open_job(root: Path, settings: TrainSettings, seed: int, group: ProcessGroup
     trainer = Trainer(seed, header, settings, total, per_epoch, device, group, start)
     key = digest([FORMAT, asdict(settings), asdict(header), seed, threads, group.size, device.type, inputs(root, settings)])
     checkpoint = Checkpoint(root / CHECKPOINT, key)
-    if found := checkpoint.load():
-        trainer.restore(*found)
+    trainer.done = checkpoint.resume(trainer.nets, trainer.optimiser)
     data, checked = (rooms_of(part, header, device) for part in (sets.train, sets.val or sets.train[:64]))
     return Job(trainer, data, checked, sets, header, inventory, checkpoint, Checkpoint(root / INVENTORY_CHECKPOINT, key))
 

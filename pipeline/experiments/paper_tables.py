@@ -1,20 +1,37 @@
 """The paper's tables from trials: quantity, walkable area, articulation, ablation, categories."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from pipeline.entities.asset import Asset
-from pipeline.experiments.settings import MetricsSettings
 from pipeline.experiments.trials import Condition, Trial
 from pipeline.homes.rows import Row
-from pipeline.metrics import articulation, category, collision, control, reach
+from pipeline.metrics import collision, control, reach
+from pipeline.metrics.two_samples import ckl
 
 ALL_PLAIN, ALL_GUIDED = "all_plain", "all_guided"  # the conditions that furnish every room of the split
 Trials = Mapping[str, Trial]
 Json = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class MetricsSettings:
+    """What the stage `metrics` measures (section `metrics`)."""
+
+    rooms: int = 25  # rooms per condition, from the test split
+    all_rooms: int = 400  # most rooms of the split that are furnished for CKL
+    counts: tuple[int, ...] = (5, 8, 12, 16)  # N_target of the quantity experiment
+    taus: tuple[float, ...] = (0.6, 0.7, 0.8, 0.9)  # thresholds of the walkable-area experiment
+    split: str = "test"  # rooms of this split; train where it has too few
+    plan_seeds: int = 2  # seeds per benchmark prompt
+    gallery: int = 4  # homes that are path-traced
+    gallery_samples: int = 48  # light paths per pixel
+    gallery_width: int = 800  # px
+    inception: str = ""  # TorchScript file of Inception-v3, for FID, KID and SCA with its features beside our own net's; "": none
+    baselines: bool = False  # train and compare the layout models of the peers as well (stage `baselines`)
 
 
 def families(settings: MetricsSettings) -> list[list[Condition]]:
@@ -62,24 +79,21 @@ def walkable_table(trials: Trials, taus: Sequence[float], rooms: int) -> Json:
     return table
 
 
-def articulation_table(rng: np.random.Generator, trials: Trials, sweeps: articulation.Sweeps, assets: Mapping[str, Asset]) -> Json:
+def articulation_table(rng: np.random.Generator, trials: Trials, sweeps: collision.Sweeps, assets: Mapping[str, Asset]) -> Json:
     """Return R_acoll, R_reach, Col_obj and openable objects: without guidance, with the paper's heuristic, with the joints' sweeps."""
-    table: Json = {}
-    for name in ("plain", "heuristic", "guided"):
-        table[f"{name}_drafted"] = figures(rng, trials[name].drafted, sweeps, assets)
-    for name in ("plain", "guided"):
-        table[f"{name}_shipped"] = figures(rng, trials[name].shipped, sweeps, assets)
-    return table
+    drafted = {f"{name}_drafted": trials[name].drafted for name in ("plain", "heuristic", "guided")}
+    shipped = {f"{name}_shipped": trials[name].shipped for name in ("plain", "guided")}
+    return {name: figures(rng, rows, sweeps, assets) for name, rows in (drafted | shipped).items()}
 
 
-def figures(rng: np.random.Generator, rows: Mapping[str, list[Row]], sweeps: articulation.Sweeps, assets: Mapping[str, Asset]) -> Json:
+def figures(rng: np.random.Generator, rows: Mapping[str, list[Row]], sweeps: collision.Sweeps, assets: Mapping[str, Asset]) -> Json:
     """Return every figure of articulation and collision for rows of rooms, objects and joints."""
     return {
-        "r_acoll_heuristic": articulation.acoll(rng, rows["objects"], "heuristic"),
-        "r_acoll_joints": articulation.acoll(rng, rows["objects"], "joints", sweeps),
-        "swept": articulation.swept(rows["joints"]),
+        "r_acoll_heuristic": collision.acoll(rng, rows["objects"], "heuristic"),
+        "r_acoll_joints": collision.acoll(rng, rows["objects"], "joints", sweeps),
+        "swept": collision.swept(rows["joints"]),
         "r_reach": reach.reach(rng, rows["rooms"], rows["objects"]),
-        "reach": reach.openable_reach(rows["joints"]),
+        "reach": collision.openable_reach(rows["joints"]),
         "collision": collision.rates(rows["objects"], assets),
         "openable": control.openable(rng, rows["rooms"]),
         "walkable": control.walkable_means(rng, rows["rooms"]),
@@ -113,9 +127,9 @@ def category_table(trials: Trials, real: Iterable[Row], held_out: Iterable[Row],
     known = set(names)
     truth, learnt = ([row for row in rows if row["category"] in known] for rows in (held_out, real))
     return {
-        "train_against_test": category.ckl(truth, learnt, names),
-        "plain": category.ckl(truth, trials[ALL_PLAIN].drafted["objects"], names),
-        "guided": category.ckl(truth, trials[ALL_GUIDED].drafted["objects"], names),
+        "train_against_test": ckl(truth, learnt, names),
+        "plain": ckl(truth, trials[ALL_PLAIN].drafted["objects"], names),
+        "guided": ckl(truth, trials[ALL_GUIDED].drafted["objects"], names),
     }
 
 

@@ -1,15 +1,13 @@
 """Training of the VAE: a loop that yields, so that the caller logs and stops."""
 
-import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import torch
 from torch import Tensor
 
-from pipeline import seeds
 from pipeline.latents.vae import EncodeSettings, PointVae, chamfer, kl_to_standard_normal
-from pipeline.tensors import Checkpoint
+from pipeline.tensors import Checkpoint, advance, cosine, generator, initial
 
 EVERY = 50  # steps between checkpoints: some five seconds of work
 
@@ -24,9 +22,7 @@ class Step(NamedTuple):
 
 def init_vae(seed: int, settings: EncodeSettings) -> PointVae:
     """Build the untrained net from the seed alone."""
-    with torch.random.fork_rng(devices=[]):
-        torch.manual_seed(seeds.key(seed, "vae-init") % 2**63)
-        return PointVae.of(settings)
+    return initial(lambda: PointVae.of(settings), seed, "vae-init")
 
 
 def train(
@@ -41,7 +37,7 @@ def train(
     optimiser = torch.optim.Adam(net.parameters(), lr=settings.learning_rate)
     done = checkpoint.resume(net, optimiser) if checkpoint else 0
     for step in range(done, settings.steps):
-        rng = torch.Generator().manual_seed(seeds.key(seed, "vae-step", step) % 2**63)
+        rng = generator(seed, "vae-step", step)
         rows = torch.randint(len(clouds), (settings.batch,), generator=rng).to(device)
         subset = torch.randperm(clouds.shape[1], generator=rng)[: settings.train_points].to(device)
         batch = clouds[rows][:, subset]
@@ -49,12 +45,8 @@ def train(
         noise = torch.randn(mean.shape, generator=rng).to(device)
         reconstruction = net.decoder(mean + (0.5 * logvar).exp() * noise)
         distance, kl = chamfer(batch, reconstruction).mean(), kl_to_standard_normal(mean, logvar).mean()
-        for group in optimiser.param_groups:
-            group["lr"] = settings.learning_rate * min(1.0, (step + 1) / 20) * 0.5 * (1 + math.cos(math.pi * step / settings.steps))
-        optimiser.zero_grad(set_to_none=True)
         (distance + settings.kl_weight * kl).backward()
-        torch.nn.utils.clip_grad_norm_(net.parameters(), 1.0)
-        optimiser.step()
+        advance(optimiser, settings.learning_rate * min(1.0, (step + 1) / 20) * cosine(step / settings.steps), 1.0)
         if checkpoint and (step + 1) % EVERY == 0:
             checkpoint.keep(step + 1, net, optimiser)
         yield Step(step, float(distance.detach()), float(kl.detach()))

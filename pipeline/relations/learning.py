@@ -12,8 +12,7 @@ from pipeline.relations import walls
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.clusters import entropy, split
 from pipeline.relations.frames import ALONG, NORMAL, OVER, SIDES, Boxes, Frames, offset_along, relate, wrap_angle
-from pipeline.relations.model import PairRelation, Relations, relations
-from pipeline.relations.modes import Mode, Span, in_any_mode
+from pipeline.relations.model import Mode, PairRelation, Relations, Span, in_any_mode, relations
 
 Indices = NDArray[np.intp]
 

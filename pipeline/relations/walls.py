@@ -7,8 +7,7 @@ import numpy as np
 from pipeline.arrays import Floats
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.clusters import split
-from pipeline.relations.model import WallRelation
-from pipeline.relations.modes import METRES, RADIANS, Span
+from pipeline.relations.model import METRES, RADIANS, Span, WallRelation
 
 AROUND = ("front", "right", "back", "left")
 LEAST_CASES = 30  # things of a category

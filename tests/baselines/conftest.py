@@ -3,8 +3,7 @@ import math
 import pytest
 import torch
 
-from pipeline.baselines.rooms import furniture, outlines
-from pipeline.baselines.scaling import Scaling
+from pipeline.baselines.rooms import Scaling, furniture, outlines
 from pipeline.baselines.settings import BaselineSettings
 from tests.diffusion.small_world import CLASSES, make_examples
 

@@ -12,8 +12,7 @@ from pipeline.errors import ContentError
 from pipeline.features import inception
 from pipeline.features import net as nets
 from pipeline.features.training import Examples, train
-from pipeline.metrics.perturbations import spoilt
-from pipeline.metrics.views import STATES, compare_views, features_once, views_of
+from pipeline.metrics.views import STATES, compare_views, features_once, spoilt, views_of
 from tests.relations.making import bedrooms
 
 SAID = nets.header(("bedroom",), STATES, ("double_bed",))
