@@ -32,7 +32,8 @@ from pipeline.diffusion.rooms import Example, read_sets
 from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Home, Placement
 from pipeline.experiments.realism import alike, embeddings, furnished
-from pipeline.experiments.trials import FIRST, spread, test_rooms
+from pipeline.experiments.settings import spread
+from pipeline.experiments.trials import FIRST, test_rooms
 from pipeline.homes.factory import Factory, load_factory
 from pipeline.homes.furnish import Draft, draft_rooms, retrieve
 from pipeline.homes.request import RoomJob

@@ -15,11 +15,11 @@ from tqdm import tqdm
 from pipeline import params
 from pipeline.baselines import ours
 from pipeline.baselines.job import BASELINES, NETS, Job, Trainer, furnish, open_job, train, trainer
-from pipeline.baselines.settings import BaselineSettings
+from pipeline.baselines.rooms import BaselineSettings
 from pipeline.diffusion.settings import SampleSettings, TrainSettings
 from pipeline.entry import run
 from pipeline.experiments.baselines import cases_of, compare_models
-from pipeline.experiments.paper_tables import MetricsSettings
+from pipeline.experiments.settings import MetricsSettings
 from pipeline.manifest import write_json
 from pipeline.relations.model import Relations
 

@@ -18,7 +18,7 @@ from pipeline import params, seeds, taxonomy
 from pipeline.entry import run
 from pipeline.execution import cores
 from pipeline.features import net as nets
-from pipeline.features.training import Examples, train
+from pipeline.features.net import Examples, train
 from pipeline.metrics.layout_features import summaries
 from pipeline.metrics.relations import furniture
 from pipeline.metrics.views import HARMS, STATES, views_of

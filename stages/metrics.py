@@ -12,10 +12,10 @@ from pipeline.execution import cores, map_jobs, track
 from pipeline.experiments import paper_tables
 from pipeline.experiments.dataset import dataset_coherence, dataset_figures
 from pipeline.experiments.document import write_report
-from pipeline.experiments.paper_tables import MetricsSettings
 from pipeline.experiments.prompts import evaluate_prompts, read_prompts
 from pipeline.experiments.realism import beside, embeddings, realism_table
-from pipeline.experiments.trials import Condition, Drafts, Trial, spread, test_rooms, trial
+from pipeline.experiments.settings import MetricsSettings, spread
+from pipeline.experiments.trials import Condition, Drafts, Trial, test_rooms, trial
 from pipeline.floorplan import parse
 from pipeline.homes.factory import open_factory
 from pipeline.homes.request import RoomJob

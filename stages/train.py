@@ -16,11 +16,10 @@ from pipeline import params
 from pipeline.diffusion.checkpoint import save_weights
 from pipeline.diffusion.inventory import fit
 from pipeline.diffusion.job import WEIGHTS, Job, holdings, open_job
-from pipeline.diffusion.livelog import live_log
 from pipeline.diffusion.process_group import ProcessGroup, spawn_group
 from pipeline.diffusion.rooms import Sets
 from pipeline.diffusion.settings import TrainSettings
-from pipeline.diffusion.training import Trainer, train, validation
+from pipeline.diffusion.training import Trainer, live_log, train, validation
 from pipeline.entry import run
 from pipeline.manifest import write_json
 

@@ -10,8 +10,7 @@ import math
 import torch
 from torch import Tensor, nn
 
-from pipeline.baselines.rooms import BOX, PLACE, SIZE, Found, Furniture, Outlines, Scaling
-from pipeline.baselines.settings import BaselineSettings
+from pipeline.baselines.rooms import BOX, PLACE, SIZE, BaselineSettings, Found, Furniture, Outlines, Scaling
 from pipeline.baselines.transformer import Block, FloorEncoder, sines
 
 MIXTURES = 10

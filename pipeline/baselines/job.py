@@ -16,12 +16,10 @@ from pipeline import taxonomy
 from pipeline.baselines import atiss, diffuscene, scenefoundry
 from pipeline.baselines.diffuscene import Denoiser, Guide
 from pipeline.baselines.physcene import Guidance
-from pipeline.baselines.rooms import Found, Furniture, Outlines, Scaling, furniture, outlines
+from pipeline.baselines.rooms import BaselineSettings, Found, Furniture, Outlines, Scaling, furniture, outlines
 from pipeline.baselines.scenefoundry import Constraints
-from pipeline.baselines.settings import BaselineSettings
 from pipeline.diffusion.codec import LATENT, proposals_of
-from pipeline.diffusion.context import Proposal, RoomContext
-from pipeline.diffusion.floor import floor_tokens
+from pipeline.diffusion.context import Proposal, RoomContext, floor_tokens
 from pipeline.diffusion.rooms import Sets, layout_weights, read_sets
 from pipeline.diffusion.sampling import openable_classes
 from pipeline.diffusion.training import follow

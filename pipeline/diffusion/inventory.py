@@ -16,8 +16,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from pipeline.diffusion.context import CategoryBounds
-from pipeline.diffusion.floor import KINDS, Floor
+from pipeline.diffusion.context import KINDS, CategoryBounds, Floor
 from pipeline.diffusion.settings import InventorySettings
 from pipeline.tensors import Checkpoint, advance, cosine, generator, initial
 
@@ -146,11 +145,6 @@ def room_features(floor: Floor, height: float) -> NDArray[np.float32]:
         openings += [float(of_kind.sum()) / 2, float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=-1).sum()) / 3]
     shape = [np.log(max(area, 0.5)) - 2, extent[0] / 3 - 1, extent[1] / 4 - 1, around / 12 - 1, len(walls) / 8 - 1, height - 2.7]
     return np.array([*shape, *openings], np.float32)
-
-
-def counts_of(classes: NDArray[np.int64], number: int) -> NDArray[np.int64]:
-    """Return how many objects (C,) of each class there are."""
-    return np.bincount(classes, minlength=number)[:number]
 
 
 class Holdings(NamedTuple):

@@ -44,7 +44,9 @@ class Optimiser(torch.optim.Optimizer):
         for p in self.matrices.values():
             if p.grad is None:
                 continue
-            momentum = self.state[p].setdefault("momentum", torch.zeros_like(p))
+            if not self.state[p]:
+                self.state[p]["momentum"] = torch.zeros_like(p)
+            momentum = self.state[p]["momentum"]
             momentum.lerp_(p.grad, 1 - MOMENTUM)
             ahead = p.grad.lerp(momentum, MOMENTUM)  # Nesterov's: where the momentum will be
             for part, move in zip(squares(p, self.width), squares(ahead, self.width), strict=True):

@@ -1,8 +1,11 @@
-"""Training of the denoiser: a loop that yields, so that the caller logs, saves and stops."""
+"""Training of the denoiser: a loop that yields, so that the caller logs and stops; its live metrics. Neither git nor network is touched."""
 
 import copy
-from collections.abc import Iterator
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +23,7 @@ from pipeline.diffusion.settings import TrainSettings
 from pipeline.tensors import Checkpoint, advance, cosine, generator, initial
 
 EARLY = 0.5  # weight of the loss of all passes but the last
+COLUMNS = ("step", "loss", "geometry", "shape", "rate")  # of plots/loss.csv
 LEVELS = (-3.0, -1.0, 0.5, 2.0, 4.0, 6.0)  # lambda at which validation asks
 
 
@@ -40,6 +44,9 @@ class Rooms(NamedTuple):
     objects: Objects
     weights: NDArray[np.float64]
     counts: NDArray[np.int64]
+
+
+Log = Callable[[Step, Mapping[str, Mapping[str, float]]], None]
 
 
 class Trainer:
@@ -149,3 +156,32 @@ def validation(trainer: Trainer, data: Rooms) -> dict[str, dict[str, float]]:
         mean = torch.cat(terms, 1).mean(1).tolist()
         losses[f"lambda {level:g}"] = dict(zip(("geometry", "shape"), (round(v, 6) for v in mean), strict=True))
     return losses
+
+
+@contextmanager
+def live_log(root: Path, resume: int) -> Iterator[Log]:
+    """Yield what writes a step, and the validation losses as they stand, to plots/loss.csv and DVCLive. A resumed run keeps the rows up to the step it goes on from."""
+    from dvclive.live import Live
+
+    os.environ.setdefault("DVC_NO_ANALYTICS", "1")
+    path = root / "plots" / "loss.csv"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    before = path.read_text(encoding="utf-8").splitlines() if resume and path.is_file() else []
+    kept = [row for row in before if row[:1].isdigit() and int(row.split(",")[0]) <= resume]
+    with (
+        path.open("w", encoding="utf-8") as file,
+        Live(str(root / "dvclive"), resume=bool(resume), save_dvc_exp=False, dvcyaml=None, report=None, monitor_system=False) as live,
+    ):
+
+        def log(step: Step, by_level: Mapping[str, Mapping[str, float]]) -> None:
+            values = [step.done, round(step.loss, 6), round(step.geometry, 6), round(step.shape, 6), round(step.rate, 8)]
+            print(*values, sep=",", file=file, flush=True)
+            live.step = step.done
+            for name, value in zip(COLUMNS[1:], values[1:], strict=True):
+                live.log_metric(f"train/{name}", value, plot=True)
+            for level, terms in by_level.items():
+                for name, value in terms.items():
+                    live.log_metric(f"val/{name}/{level}", value, plot=False)
+
+        print(",".join(COLUMNS), *kept, sep="\n", file=file)
+        yield log

@@ -10,13 +10,14 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
 
 from pipeline import seeds
-from pipeline.baselines.settings import BaselineSettings
+from pipeline.baselines.rooms import BaselineSettings
 from pipeline.diffusion.codec import proposals_of
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.rooms import Example
-from pipeline.experiments.trials import spread
+from pipeline.experiments.settings import spread
 from pipeline.metrics import collision, relations
 from pipeline.metrics.intervals import bootstrap, rate
 from pipeline.metrics.layout_features import features
@@ -46,8 +47,7 @@ def cases_of(examples: Sequence[Example], classes: Sequence[str]) -> list[Case]:
 
 def holds(case: Case, count: int) -> bool:
     """Tell whether a room is large enough to be asked for so many things."""
-    x, y = case.context.polygon.T
-    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2 >= FLOOR * count
+    return bool(shapely.Polygon(case.context.polygon).area >= FLOOR * count)
 
 
 def compare_models(

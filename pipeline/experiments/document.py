@@ -17,7 +17,7 @@ from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
 from pipeline.execution import cores, map_jobs
 from pipeline.experiments.dataset import reject_rows, shipped_rows
-from pipeline.experiments.paper_tables import MetricsSettings
+from pipeline.experiments.settings import MetricsSettings
 from pipeline.export import ExportFolder, export_home, home_stages
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of

@@ -1,12 +1,13 @@
 """The paper's tables from trials: quantity, walkable area, articulation, ablation, categories."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from pipeline.entities.asset import Asset
+from pipeline.experiments.settings import MetricsSettings
 from pipeline.experiments.trials import Condition, Trial
 from pipeline.homes.rows import Row
 from pipeline.metrics import collision, control, reach
@@ -15,23 +16,6 @@ from pipeline.metrics.two_samples import ckl
 ALL_PLAIN, ALL_GUIDED = "all_plain", "all_guided"  # the conditions that furnish every room of the split
 Trials = Mapping[str, Trial]
 Json = dict[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class MetricsSettings:
-    """What the stage `metrics` measures (section `metrics`)."""
-
-    rooms: int = 25  # rooms per condition, from the test split
-    all_rooms: int = 400  # most rooms of the split that are furnished for CKL
-    counts: tuple[int, ...] = (5, 8, 12, 16)  # N_target of the quantity experiment
-    taus: tuple[float, ...] = (0.6, 0.7, 0.8, 0.9)  # thresholds of the walkable-area experiment
-    split: str = "test"  # rooms of this split; train where it has too few
-    plan_seeds: int = 2  # seeds per benchmark prompt
-    gallery: int = 4  # homes that are path-traced
-    gallery_samples: int = 48  # light paths per pixel
-    gallery_width: int = 800  # px
-    inception: str = ""  # TorchScript file of Inception-v3, for FID, KID and SCA with its features beside our own net's; "": none
-    baselines: bool = False  # train and compare the layout models of the peers as well (stage `baselines`)
 
 
 def families(settings: MetricsSettings) -> list[list[Condition]]:

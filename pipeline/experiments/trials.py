@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 from pipeline.diffusion.settings import Articulation
 from pipeline.entities.home import Home, Placement
@@ -16,7 +15,6 @@ from pipeline.homes.rows import Row, object_row, plan_of, room_row
 from pipeline.homes.violations import violations
 from pipeline.verify import verify_home
 
-T = TypeVar("T")
 FIRST = 10_000_000  # home index of the first room: keys that no dataset of homes will ever use
 
 
@@ -142,12 +140,6 @@ def test_rooms(tables: Mapping[str, Sequence[Row]], split: str, layout_types: Se
     if not jobs:
         raise ContentError(f"the split {split!r} holds no furnished room", "raise corpus.houses in params.yaml")
     return jobs
-
-
-def spread(items: Sequence[T], count: int) -> list[T]:
-    """Return `count` of the items, evenly spread over the list."""
-    taken = min(count, len(items))
-    return [items[i * len(items) // taken] for i in range(taken)]
 
 
 def room_home(job: RoomJob, placements: Sequence[Placement]) -> Home:

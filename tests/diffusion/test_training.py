@@ -215,7 +215,7 @@ def test_the_constraint_term_of_eq_1_has_a_switch_and_a_scale(header, data):
 
 
 def test_g_points_down_the_penalty(examples, norm):
-    from pipeline.diffusion.constraints import articulated_collision
+    from pipeline.diffusion.guidance import articulated_collision
     from pipeline.diffusion.relations import boxes_of
 
     codec = Codec(norm)

@@ -10,8 +10,8 @@ from conftest import Rules, factory, library  # noqa: F401 - the factory of rule
 
 from pipeline.errors import ContentError
 from pipeline.experiments import paper_tables
-from pipeline.experiments.paper_tables import MetricsSettings
-from pipeline.experiments.trials import Condition, Drafts, Trial, spread, trial
+from pipeline.experiments.settings import MetricsSettings, spread
+from pipeline.experiments.trials import Condition, Drafts, Trial, trial
 from pipeline.experiments.trials import test_rooms as rooms_of
 from pipeline.homes.rows import opening_row, room_row, scene_row
 
