@@ -16,7 +16,7 @@ from rooms import ROOT, SPLIT, jobs_of
 
 from pipeline import params
 from pipeline.experiments.baselines import FLOOR
-from pipeline.experiments.rooms import spread
+from pipeline.experiments.settings import spread
 from pipeline.experiments.trials import Condition, Drafts, trial
 from pipeline.homes.factory import load_factory
 from pipeline.metrics.control import quantity

@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks import knobs
-from pipeline.experiments.prompt_file import read_prompts
-from pipeline.experiments.prompts import evaluate_prompts, report
+from pipeline.experiments.prompts import evaluate_prompts, read_prompts, report
 from pipeline.floorplan import FloorProgram, complete, parse, warm
 from pipeline.floorplan.program.floor_program import Entrance, Link, Range, RoomReq
 from pipeline.floorplan.solver import search

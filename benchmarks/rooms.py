@@ -32,17 +32,17 @@ from pipeline.diffusion.rooms import Example, read_sets
 from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Home, Placement
 from pipeline.experiments.realism import alike, embeddings, furnished
-from pipeline.experiments.rooms import FIRST, spread, test_rooms
+from pipeline.experiments.settings import spread
+from pipeline.experiments.trials import FIRST, test_rooms
 from pipeline.homes.factory import Factory, load_factory
 from pipeline.homes.furnish import Draft, draft_rooms, retrieve
 from pipeline.homes.request import RoomJob
 from pipeline.homes.room_finishing import finish
 from pipeline.homes.rows import object_row
-from pipeline.metrics.articulation import are_obstructed, sweeps_of, swept
-from pipeline.metrics.category import ckl
+from pipeline.metrics.collision import are_obstructed, sweeps_of, swept
 from pipeline.metrics.layout_features import features
 from pipeline.metrics.relations import compare, furniture
-from pipeline.metrics.two_samples import forest_accuracy
+from pipeline.metrics.two_samples import ckl, forest_accuracy
 from pipeline.metrics.views import Features, compare_views, features_once
 from pipeline.relations.arrangement import Arrangement, make_arrangement, rooms_of
 from pipeline.relations.model import Relations

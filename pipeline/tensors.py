@@ -1,7 +1,11 @@
-"""Nets on disk: safetensors with a header of text, written whole or not at all; and checkpoints, by which a killed training goes on."""
+"""Nets on disk: safetensors with a header of text, written whole or not at all; checkpoints, by which a killed training goes on.
+
+And what all trainings share: draws by key, steps down a gradient.
+"""
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -11,13 +15,14 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 from torch import Tensor, isfinite, nn
 
-from pipeline import params
+from pipeline import params, seeds
 from pipeline.errors import ContentError
 from pipeline.manifest import canonical, write_bytes
 
 T = TypeVar("T")
+N = TypeVar("N", bound=nn.Module)
 Groups = dict[str, dict[str, Tensor]]
-CHECKPOINT = "sfgen-checkpoint-1"
+CHECKPOINT = "sfgen-checkpoint-2"
 AGAIN = "delete it: training starts afresh without it"
 
 
@@ -82,6 +87,32 @@ def grouped(path: Path, tensors: Mapping[str, Tensor], remedy: str) -> Groups:
             raise ContentError(f"{path} holds a tensor of no net ({name})", remedy)
         groups.setdefault(group, {})[own] = value
     return groups
+
+
+def generator(seed: int, name: str, *keys: int | str) -> torch.Generator:
+    """Return a generator whose draws hang on a key alone (see `seeds.key`)."""
+    return torch.Generator().manual_seed(seeds.key(seed, name, *keys) % 2**63)
+
+
+def initial(build: Callable[[], N], seed: int, name: str, *keys: int | str) -> N:
+    """Build a net whose weights are drawn by a key alone."""
+    with torch.random.fork_rng(devices=[]):
+        torch.manual_seed(seeds.key(seed, name, *keys) % 2**63)
+        return build()
+
+
+def cosine(share: float) -> float:
+    """Return what is left of a learning rate that falls along a cosine, after a share of the training."""
+    return 0.5 * (1 + math.cos(math.pi * share))
+
+
+def advance(optimiser: torch.optim.Optimizer, rate: float, clip: float) -> None:
+    """Clip the gradients at a norm, take a step along them at a learning rate, and forget them."""
+    for group in optimiser.param_groups:
+        group["lr"] = rate
+    nn.utils.clip_grad_norm_([p for group in optimiser.param_groups for p in group["params"]], clip)
+    optimiser.step()
+    optimiser.zero_grad()
 
 
 @dataclass(frozen=True, slots=True)

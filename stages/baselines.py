@@ -14,10 +14,8 @@ from tqdm import tqdm
 
 from pipeline import params
 from pipeline.baselines import ours
-from pipeline.baselines.furnish import BASELINES, furnish
-from pipeline.baselines.job import NETS, Job, open_job, trainer
-from pipeline.baselines.settings import BaselineSettings
-from pipeline.baselines.training import Trainer, train
+from pipeline.baselines.job import BASELINES, NETS, Job, Trainer, furnish, open_job, train, trainer
+from pipeline.baselines.rooms import BaselineSettings
 from pipeline.diffusion.settings import SampleSettings, TrainSettings
 from pipeline.entry import run
 from pipeline.experiments.baselines import cases_of, compare_models

@@ -18,9 +18,8 @@ from pipeline import params, seeds, tables
 from pipeline.entities.files import load_asset
 from pipeline.entry import run
 from pipeline.errors import ContentError
-from pipeline.latents.fidelity import fidelity, self_ranking
 from pipeline.latents.surface import surface_points, triangles
-from pipeline.latents.training import encode, init_vae, train
+from pipeline.latents.training import encode, fidelity, init_vae, self_ranking, train
 from pipeline.latents.vae import FORMAT, EncodeSettings, PointVae, chamfer, load_vae, save_vae
 from pipeline.manifest import digest, sha256, write_json
 from pipeline.rendering.surface_colour import finish_of

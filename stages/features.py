@@ -18,11 +18,10 @@ from pipeline import params, seeds, taxonomy
 from pipeline.entry import run
 from pipeline.execution import cores
 from pipeline.features import net as nets
-from pipeline.features.training import Examples, train
+from pipeline.features.net import Examples, train
 from pipeline.metrics.layout_features import summaries
-from pipeline.metrics.perturbations import HARMS
 from pipeline.metrics.relations import furniture
-from pipeline.metrics.views import STATES, views_of
+from pipeline.metrics.views import HARMS, STATES, views_of
 from pipeline.relations.arrangement import Arrangement, rooms_of
 
 ROOMS = 30_000  # training rooms at most, each as it is and with each harm

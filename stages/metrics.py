@@ -12,18 +12,16 @@ from pipeline.execution import cores, map_jobs, track
 from pipeline.experiments import paper_tables
 from pipeline.experiments.dataset import dataset_coherence, dataset_figures
 from pipeline.experiments.document import write_report
-from pipeline.experiments.prompt_file import read_prompts
-from pipeline.experiments.prompts import evaluate_prompts
+from pipeline.experiments.prompts import evaluate_prompts, read_prompts
 from pipeline.experiments.realism import beside, embeddings, realism_table
-from pipeline.experiments.rooms import spread, test_rooms
-from pipeline.experiments.settings import MetricsSettings
-from pipeline.experiments.trials import Condition, Drafts, Trial, trial
+from pipeline.experiments.settings import MetricsSettings, spread
+from pipeline.experiments.trials import Condition, Drafts, Trial, test_rooms, trial
 from pipeline.floorplan import parse
 from pipeline.homes.factory import open_factory
 from pipeline.homes.request import RoomJob
 from pipeline.homes.rows import Row
 from pipeline.manifest import write_bytes, write_json
-from pipeline.metrics.articulation import sweeps_of
+from pipeline.metrics.collision import sweeps_of
 from pipeline.relations.model import Relations
 from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 

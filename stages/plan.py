@@ -6,8 +6,7 @@ from pathlib import Path
 
 from pipeline.entry import announce_compiling
 from pipeline.errors import RefusedError, UsageError
-from pipeline.experiments.prompt_file import read_prompts
-from pipeline.experiments.prompts import evaluate_prompts, report
+from pipeline.experiments.prompts import evaluate_prompts, read_prompts, report
 from pipeline.floorplan import plan_json, refusal_json, request, solve, warm
 from pipeline.floorplan.document import document_schema
 from pipeline.floorplan.draw.characters import terminal

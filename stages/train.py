@@ -16,11 +16,10 @@ from pipeline import params
 from pipeline.diffusion.checkpoint import save_weights
 from pipeline.diffusion.inventory import fit
 from pipeline.diffusion.job import WEIGHTS, Job, holdings, open_job
-from pipeline.diffusion.livelog import live_log
 from pipeline.diffusion.process_group import ProcessGroup, spawn_group
 from pipeline.diffusion.rooms import Sets
 from pipeline.diffusion.settings import TrainSettings
-from pipeline.diffusion.training import Trainer, train, validation
+from pipeline.diffusion.training import Trainer, live_log, train, validation
 from pipeline.entry import run
 from pipeline.manifest import write_json
 
@@ -52,19 +51,13 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
     """Train, validate, log and save; write the weights and what the stage reports."""
     trainer = job.trainer
 
-    def save(state: Trainer) -> None:
-        job.checkpoint.save(state.done, state.groups())
-
-    def validate() -> dict[str, dict[str, float]]:
-        return validation(trainer, job.checked)
-
     by_level: dict[str, dict[str, float]] = {}
     with live_log(root, trainer.done) as log, tqdm(total=trainer.total, initial=trainer.done, desc="train", unit="step") as bar:
-        for step in train(trainer, job.data, save):
+        for step in train(trainer, job.data, job.checkpoint):
             bar.update()
             last = step.done == trainer.total
             if step.done % settings.validate_every == 0 or last:
-                by_level = validate()
+                by_level = validation(trainer, job.checked)
             if step.done % 10 == 0 or last:
                 bar.set_postfix(loss=f"{step.loss:.3f}", geometry=f"{step.geometry:.3f}", refresh=False)
                 log(step, by_level)
@@ -72,7 +65,7 @@ def lead(root: Path, job: Job, settings: TrainSettings) -> None:
     inventory = fit(job.inventory, contents, trainer.settings.inventory, trainer.seed, *kept)
     save_weights(root / WEIGHTS, job.header, {"denoiser": trainer.average, "inventory": inventory})
     job.inventory_checkpoint.remove()
-    write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or validate()))
+    write_json(root / "metrics/train.json", report(job.sets, trainer, by_level or validation(trainer, job.checked)))
 
 
 def report(sets: Sets, trainer: Trainer, by_level: dict[str, dict[str, float]]) -> dict[str, Any]:

@@ -9,8 +9,7 @@ import numpy as np
 from pipeline import taxonomy
 from pipeline.arrays import Floats
 from pipeline.relations.frames import REFERENCES, SIDES
-from pipeline.relations.model import PairRelation, Relations
-from pipeline.relations.modes import Mode, Span
+from pipeline.relations.model import Mode, PairRelation, Relations, Span
 
 MUST, WANT = 0.85, 0.4  # share of a category's training examples with their backs at walls from which it must, or would rather, be so
 UNKNOWN = 0.6  # the share that is taken of a category that the training tables do not know: to the wall where it is drafted near one

@@ -10,9 +10,7 @@ import math
 import torch
 from torch import Tensor, nn
 
-from pipeline.baselines.rooms import BOX, Furniture, Outlines
-from pipeline.baselines.scaling import PLACE, SIZE, Found, Scaling
-from pipeline.baselines.settings import BaselineSettings
+from pipeline.baselines.rooms import BOX, PLACE, SIZE, BaselineSettings, Found, Furniture, Outlines, Scaling
 from pipeline.baselines.transformer import Block, FloorEncoder, sines
 
 MIXTURES = 10

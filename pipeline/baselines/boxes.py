@@ -81,19 +81,12 @@ def iou(a: Boxes, b: Boxes) -> Tensor:
     return ratio
 
 
-def near(a: Boxes, b: Boxes) -> Tensor:
-    """Tell (...) of which pairs the footprints could meet at all: their circles do."""
-    with torch.no_grad():
-        reach = torch.linalg.vector_norm(a.half[..., :2], dim=-1) + torch.linalg.vector_norm(b.half[..., :2], dim=-1)
-        close: Tensor = torch.linalg.vector_norm(a.centre[..., :2] - b.centre[..., :2], dim=-1) < reach
-        return close
-
-
 def overlaps(boxes: Boxes, others: Boxes, pairs: Tensor) -> Tensor:
-    """Return the sum (B,) over chosen ordered pairs (B, N, M) of IoU3D(boxes_i (B, N), others_j (B, M)). Only pairs that could meet are computed."""
-    first = Boxes(*(part[:, :, None] for part in boxes))
-    second = Boxes(*(part[:, None] for part in others))
-    room, i, j = torch.nonzero(pairs & near(first, second), as_tuple=True)
+    """Return the sum (B,) over chosen ordered pairs (B, N, M) of IoU3D(boxes_i (B, N), others_j (B, M)). Only pairs whose circles meet in plan are computed."""
+    with torch.no_grad():
+        own, theirs = (torch.linalg.vector_norm(each.half[..., :2], dim=-1) for each in (boxes, others))
+        apart = torch.linalg.vector_norm(boxes.centre[:, :, None, :2] - others.centre[:, None, :, :2], dim=-1)
+        room, i, j = torch.nonzero(pairs & (apart < own[:, :, None] + theirs[:, None]), as_tuple=True)
     ious = iou(boxes.at(room, i), others.at(room, j))
     return torch.zeros(len(pairs), dtype=ious.dtype, device=ious.device).index_add(0, room, ious)
 

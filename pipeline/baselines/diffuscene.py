@@ -13,9 +13,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from pipeline.baselines.rooms import BOX, Furniture, Outlines
-from pipeline.baselines.scaling import Scaling
-from pipeline.baselines.settings import BaselineSettings
+from pipeline.baselines.rooms import BOX, BaselineSettings, Furniture, Outlines, Scaling
 from pipeline.baselines.transformer import Block, FloorEncoder, sines
 
 Guide = Callable[[Tensor, int, float], Tensor]  # mean (B, N, D), level t, variance of the step -> what is added to the mean

@@ -16,9 +16,7 @@ from torch import Tensor
 
 from pipeline.baselines.boxes import boxes_of, extend_front, mates, overlaps
 from pipeline.baselines.diffuscene import Denoiser, add_noise, clean, denoising
-from pipeline.baselines.rooms import BOX, Furniture, Outlines
-from pipeline.baselines.scaling import Scaling
-from pipeline.baselines.settings import BaselineSettings
+from pipeline.baselines.rooms import BOX, BaselineSettings, Furniture, Outlines, Scaling
 
 
 def quantity_target(empty: Tensor, count: Tensor) -> Tensor:

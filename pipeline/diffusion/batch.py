@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
-from pipeline.diffusion.floor import KINDS, Floor
+from pipeline.diffusion.context import KINDS, Floor
 from pipeline.diffusion.rooms import SWEEPS, Example
 from pipeline.diffusion.settings import MOST_SLOTS
 

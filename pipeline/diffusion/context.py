@@ -1,4 +1,4 @@
-"""What the layout model is asked (a room) and what it answers (proposals): plain numpy, world frame."""
+"""What the layout model is asked (a room, its walls and openings as tokens) and what it answers (proposals): plain numpy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,12 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.entities.plan import Opening, OpeningKind, Plan
+from pipeline.entities.plan import OpeningKind, Plan
+
+WALLS = 20  # wall tokens; a polygon with more corners loses those that matter least
+OPENINGS = 12  # opening tokens; a room with more openings loses the narrowest
+TOKENS = WALLS + OPENINGS
+KINDS = ("wall", "door", "open", "portal", "window", "entrance")
 
 
 class Library(Protocol):
@@ -43,12 +48,6 @@ class RoomOpening:
     segment: NDArray[np.float64]
     sill: float = 0.0
     hinge: int = -1
-
-    @classmethod
-    def of(cls, opening: Opening, room_id: str) -> RoomOpening:
-        """See `opening` from the room `room_id`."""
-        inwards = opening.swing is not None and opening.swing.room_id == room_id
-        return cls(opening.kind, opening.segment, opening.sill, opening.swing.hinge if inwards and opening.swing else -1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +83,11 @@ class RoomContext:
     ) -> RoomContext:
         """Take one room out of a plan."""
         room = plan.room(room_id)
-        openings = tuple(RoomOpening.of(o, room_id) for o in plan.openings if room_id in o.rooms)
+        openings = tuple(
+            RoomOpening(o.kind, o.segment, o.sill, o.swing.hinge if o.swing and o.swing.room_id == room_id else -1)
+            for o in plan.openings
+            if room_id in o.rooms
+        )
         return cls(layout_type, room.polygon, openings, n_target, plan.elevation(room_id), room.height, category_bounds)
 
     @property
@@ -107,3 +110,67 @@ class Proposal:
     yaw: float
     size: NDArray[np.float64]
     latent: NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """One room's tokens, M = 32: first the polygon's edges in order, then the openings. Room frame.
+
+    `ends` (M, 2, 2) [m]; `normal` (M, 2) unit, into the room; `kind` (M,) index into KINDS; `hinge` (M,) end of the
+    segment (0 or 1) about which a leaf turns into this room, else -1; `sill` (M,) [m]; `mask` (M,) where there is a token.
+    """
+
+    ends: NDArray[np.float32]
+    normal: NDArray[np.float32]
+    kind: NDArray[np.int64]
+    hinge: NDArray[np.int64]
+    sill: NDArray[np.float32]
+    mask: NDArray[np.bool_]
+
+
+def floor_tokens(context: RoomContext) -> Floor:
+    """Return the tokens of a room. The origin is the centre of the polygon's box, the axes are the world's."""
+    polygon = simplify_polygon(np.asarray(context.polygon, float), WALLS) - context.centre
+    ends, normal = np.zeros((TOKENS, 2, 2), np.float32), np.zeros((TOKENS, 2), np.float32)
+    kind, hinge = np.zeros(TOKENS, np.int64), np.full(TOKENS, -1, np.int64)
+    sill, mask = np.zeros(TOKENS, np.float32), np.zeros(TOKENS, bool)
+    walls = np.stack([polygon, np.roll(polygon, -1, 0)], 1)
+    along = walls[:, 1] - walls[:, 0]
+    inward = np.stack([-along[:, 1], along[:, 0]], 1) / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    count = len(walls)
+    ends[:count], normal[:count], mask[:count] = walls, inward, True
+    openings = sorted(context.openings, key=lambda g: -float(np.linalg.norm(g.segment[1] - g.segment[0])))[:OPENINGS]
+    for i, opening in enumerate(openings, WALLS):
+        ends[i], normal[i], swapped = on_wall(opening, context.centre, walls, inward)
+        kind[i], sill[i], mask[i] = KINDS.index(opening.kind), opening.sill, True
+        hinge[i] = opening.hinge if opening.hinge < 0 or not swapped else 1 - opening.hinge
+    return Floor(ends, normal, kind, hinge, sill, mask)
+
+
+def on_wall(
+    opening: RoomOpening, centre: NDArray[np.float64], walls: NDArray[np.float64], inward: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
+    """Project an opening from the wall's centre line to the face of the nearest parallel wall, with the wall's direction.
+
+    Returns the ends (2, 2) in the room frame, the inward normal (2,), and whether the ends were swapped.
+    """
+    segment = np.asarray(opening.segment, float) - centre
+    middle, along = segment.mean(0), segment[1] - segment[0]
+    along = along / max(float(np.linalg.norm(along)), 1e-9)
+    start, edge = walls[:, 0], walls[:, 1] - walls[:, 0]
+    place = np.clip(((middle - start) * edge).sum(1) / np.maximum((edge**2).sum(1), 1e-9), 0, 1)
+    distance = np.linalg.norm(start + place[:, None] * edge - middle, axis=1) + 2 * np.abs(inward @ along)
+    wall = int(distance.argmin())
+    normal = inward[wall]
+    placed = segment - ((segment - start[wall]) @ normal)[:, None] * normal
+    swapped = bool((placed[1] - placed[0]) @ edge[wall] < 0)
+    return placed[::-1] if swapped else placed, normal, swapped
+
+
+def simplify_polygon(polygon: NDArray[np.float64], most: int) -> NDArray[np.float64]:
+    """Drop the corners that enclose the least area until at most `most` are left (Visvalingam and Whyatt, 1993)."""
+    while len(polygon) > most:
+        before, after = np.roll(polygon, 1, 0) - polygon, np.roll(polygon, -1, 0) - polygon
+        area = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+        polygon = np.delete(polygon, int(area.argmin()), 0)
+    return polygon

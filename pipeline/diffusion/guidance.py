@@ -1,25 +1,200 @@
-"""Guidance: how the clean slots that a sampling step expects are moved so that constraint functions go down.
+"""Guidance: the constraint functions phi, and how what a sampling step expects is moved so that they go down.
 
-Paper eq. guided_step shifts the mean by lambda Sigma grad phi, printed with a plus; phi is a penalty, so the move here is
--grad phi times a step length. Sigma is 1e-4 and less in the paper's window and would only rescale lambda: step lengths are
-given in the unit of what moves, and clipped. It is the expected x0 that is moved, and so the mean of the step with it; a
-later step can then bring back what the guidance has torn apart.
+phi are penalties: lower is better, differentiable in the slots they judge. The paper prints the guidance as mu + lambda Sigma grad phi, with phi a
+loss (a cross-entropy, a sum of overlaps). Followed to the letter that CLIMBS the penalty. Everything here that is called a
+`descent` is therefore -grad phi, and is added, times a step length. Sigma is 1e-4 and less in the paper's window and would
+only rescale lambda: step lengths are given in the unit of what moves, and clipped. It is the expected x0 that is moved, and so the mean of
+the step with it; a later step can then bring back what the guidance has torn apart.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import torch
 from torch import Tensor
 
 from pipeline.diffusion.batch import RoomBatch
 from pipeline.diffusion.codec import SHAPE, SIZE, YAW, Codec
-from pipeline.diffusion.constraints import articulated_collision, heuristic_sweeps
-from pipeline.diffusion.context import Library
-from pipeline.diffusion.relations import boxes_of
+from pipeline.diffusion.context import KINDS, Library
+from pipeline.diffusion.relations import Boxes, boxes_of
 from pipeline.diffusion.schedule import lambda_of
 from pipeline.diffusion.settings import SampleSettings
+
+CLEARANCE = 0.45  # [m] kept free at a doorway whose leaf does not turn into the room
+DEEP = 0.04  # [m] from which depth on a push grows no further: squares would share an overlap out along a row that is too full
+LEAF_HEIGHT = 2.0  # [m] a door leaf and a person need that much
+EIGHT = ((-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (0, 1), (-1, 0), (1, 0))  # corners and side middles, in halves of the sides
+
+
+class Prisms(NamedTuple):
+    """Upright rotated boxes (..., K): `centre`, `half` (..., K, 2), `axis` (..., K, 2) unit width direction, `low`, `high` [m]."""
+
+    centre: Tensor
+    half: Tensor
+    axis: Tensor
+    low: Tensor
+    high: Tensor
+
+
+def bodies(boxes: Boxes) -> Prisms:
+    """Return each slot's own box, its yaw direction made unit."""
+    axis = boxes.axis / torch.linalg.vector_norm(boxes.axis, dim=-1, keepdim=True).clamp_min(1e-3)
+    return Prisms(boxes.centre, boxes.half, axis, boxes.bottom, boxes.bottom + boxes.height)
+
+
+def swept(body: Prisms, sweeps: Tensor) -> tuple[Prisms, Tensor]:
+    """Place what joints sweep: boxes (B, N, K, 2, 3) in the object frame to prisms (B, N, K) and a mask of those that exist.
+
+    Without gradient through the boxes themselves: a slot moves and turns with its sweep.
+    """
+    there = torch.isfinite(sweeps).all(-1).all(-1)
+    boxes = torch.nan_to_num(sweeps)
+    middle, half = boxes.mean(-2), (boxes[..., 1, :] - boxes[..., 0, :]) / 2
+    axis = body.axis[:, :, None].expand(*there.shape, 2)
+    depth = torch.stack([-axis[..., 1], axis[..., 0]], -1)  # object y: from front to back
+    centre = body.centre[:, :, None] + middle[..., :1] * axis + middle[..., 1:2] * depth
+    low = body.low[:, :, None] + middle[..., 2] - half[..., 2]
+    return Prisms(centre, half[..., :2], axis, low, low + 2 * half[..., 2]), there
+
+
+def heuristic_sweeps(size: Tensor, opens: Tensor) -> Tensor:
+    """Return the paper's stand-in for joints (B, N, 1, 2, 3): the box grows by a third of its depth to the front.
+
+    `size` (B, N, 3) [m]; `opens` (B, N) says which classes count as articulated. Depth h becomes h + h / 3.
+    """
+    w, d, h = size.unbind(-1)
+    low = torch.stack([-w / 2, -d / 2 - d / 3, torch.zeros_like(h)], -1)
+    high = torch.stack([w / 2, d / 2, h], -1)
+    box = torch.stack([low, high], -2)[:, :, None]
+    return torch.where(opens[:, :, None, None, None], box, torch.full_like(box, torch.nan))
+
+
+def doorways(rooms: RoomBatch) -> tuple[Prisms, Tensor]:
+    """Return what must stay free before doors (B, M) and its mask: the square around the leaf's quarter disc, or a strip."""
+    start, stop = rooms.ends[:, :, 0], rooms.ends[:, :, 1]
+    width = torch.linalg.vector_norm(stop - start + 1e-9, dim=-1)
+    depth = torch.where(rooms.hinge >= 0, width, torch.full_like(width, CLEARANCE))
+    along = torch.stack([rooms.normal[..., 1], -rooms.normal[..., 0]], -1)
+    centre = (start + stop) / 2 + rooms.normal * depth[..., None] / 2
+    doors = torch.zeros_like(rooms.mask)
+    for name in ("door", "open", "portal", "entrance"):
+        doors |= rooms.kind == KINDS.index(name)
+    low = torch.zeros_like(width)
+    return Prisms(centre, torch.stack([width, depth], -1) / 2, along, low, low + LEAF_HEIGHT), doors & rooms.mask
+
+
+def overlap(a: Prisms, b: Prisms) -> Tensor:
+    """Return how deep the prisms overlap [m], 0 where they do not; a and b broadcast.
+
+    Separating axes: the least push along one of the four side directions that parts the footprints; counted only where
+    the heights overlap, with a ramp over the first 5 cm. A true depth, unlike IoU, does not fade when one box swallows
+    the other, and its gradient is the unit direction of the push; both have the same zeros.
+    """
+    apart = b.centre - a.centre
+    turn_a, turn_b = torch.stack([-a.axis[..., 1], a.axis[..., 0]], -1), torch.stack([-b.axis[..., 1], b.axis[..., 0]], -1)
+    same = (a.axis * b.axis).sum(-1).abs()
+    cross = (a.axis * turn_b).sum(-1).abs()
+    (wa, da), (wb, db) = a.half.unbind(-1), b.half.unbind(-1)
+    depth = torch.stack(
+        [
+            wa + wb * same + db * cross - (apart * a.axis).sum(-1).abs(),
+            da + wb * cross + db * same - (apart * turn_a).sum(-1).abs(),
+            wb + wa * same + da * cross - (apart * b.axis).sum(-1).abs(),
+            db + wa * cross + da * same - (apart * turn_b).sum(-1).abs(),
+        ],
+        -1,
+    ).amin(-1)
+    rise = torch.minimum(a.high, b.high) - torch.maximum(a.low, b.low)
+    return depth.clamp_min(0) * (rise.detach() / 0.05).clamp(0, 1)
+
+
+def outside(prisms: Prisms, rooms: RoomBatch, owner: Tensor) -> Tensor:
+    """Return half the squared distances [m2] by which corners and side middles of prisms (L,) lie out of their rooms `owner` (L,), summed."""
+    steps = torch.tensor(EIGHT, dtype=prisms.half.dtype, device=prisms.half.device)
+    depth = torch.stack([-prisms.axis[:, 1], prisms.axis[:, 0]], -1)
+    w, d = prisms.half[:, None, :1], prisms.half[:, None, 1:]
+    points = prisms.centre[:, None] + steps[:, :1] * prisms.axis[:, None] * w + steps[:, 1:] * depth[:, None] * d
+    start, edge, there = rooms.ends[:, :, 0], rooms.ends[:, :, 1] - rooms.ends[:, :, 0], rooms.walls
+    with torch.no_grad():
+        ay, ey, at = start[owner][:, None, :, 1], edge[owner][:, None, :, 1], points[:, :, None]
+        crosses = (ay > at[..., 1]) != (ay + ey > at[..., 1])
+        x = start[owner][:, None, :, 0] + edge[owner][:, None, :, 0] * (at[..., 1] - ay) / torch.where(ey == 0, torch.ones_like(ey), ey)
+        inside = (crosses & (at[..., 0] < x) & there[owner][:, None]).sum(-1) % 2 == 1
+    thing, corner = torch.nonzero(~inside, as_tuple=True)  # distances matter for points beyond the walls alone, and these are few
+    room, point = owner[thing], points[thing, corner][:, None]
+    a, along = start[room], edge[room]
+    place = (((point - a) * along).sum(-1) / (along**2).sum(-1).clamp_min(1e-6)).clamp(0, 1)
+    away = point - a - place[..., None] * along
+    squared = (away**2).sum(-1).masked_fill(~there[room], 1e6).amin(-1)  # a side of a box has two corners or more beyond a wall
+    return torch.zeros_like(prisms.low).index_add(0, thing, squared / 2)
+
+
+def articulated_collision(boxes: Boxes, occupied: Tensor, sweeps: Tensor | None, rooms: RoomBatch, tucked: Tensor | None = None) -> Tensor:
+    """Return phi_articoll (B,) of B rooms [m2]: how deep bodies and what their joints sweep reach into each other.
+
+    Paper eq. articoll sums IoU(b'_i, b_j) over ordered pairs, b' the extended state. Here b' is the body and, per joint,
+    the box that it really sweeps (`sweeps` (B, N, K, 2, 3), None for bodies alone); in place of the IoU stands half the
+    square of the depth (see `overlap`), whose descent is the depth itself, DEEP at most, along the shortest way out. Doorways are
+    obstacles too, and so is what lies outside the room. `occupied` (B, N) selects slots, `tucked` (B, N, N) pairs whose bodies may
+    share a place: chairs stand under tables.
+
+    Most slots are empty and most things open nothing: the pairs that are there are listed, and only these are computed.
+    """
+    batch, slots = occupied.shape
+    body, (doors, there) = bodies(boxes), doorways(rooms)
+    first_door, first_sweep = batch * slots, batch * (slots + there.shape[1])
+    things, mates = [_to_rows(body), _to_rows(doors)], occupied[:, :, None] & occupied[:, None]
+    own, door = _numbers(occupied, 0), _numbers(there, first_door)
+    pairs = [
+        _select_pairs((mates if tucked is None else mates & ~tucked).triu(1), own[:, :, None], own[:, None]),
+        _select_pairs(occupied[:, :, None] & there[:, None], own[:, :, None], door[:, None]),
+    ]
+    if sweeps is not None:
+        moving, real = swept(body, sweeps)
+        real = real & occupied[:, :, None]
+        things.append(_to_rows(moving))
+        swept_by = _numbers(real, first_sweep)[..., None]
+        others = mates & ~torch.eye(slots, dtype=torch.bool, device=occupied.device)
+        pairs += [
+            _select_pairs(real[..., None] & others[:, :, None], swept_by, own[:, None, None]),
+            _select_pairs(real[..., None] & there[:, None, None], swept_by, door[:, None, None]),
+        ]
+    listed = torch.cat(things)
+    left, right, owner = (torch.cat(parts) for parts in zip(*pairs, strict=True))
+    a, b = _from_rows(listed.detach()[left]), _from_rows(listed.detach()[right])
+    reach = (a.half**2).sum(-1).sqrt() + (b.half**2).sum(-1).sqrt()
+    meet = torch.nonzero(((b.centre - a.centre) ** 2).sum(-1) < reach**2)[:, 0]
+    depth = overlap(_from_rows(listed[left[meet]]), _from_rows(listed[right[meet]]))
+    phi = torch.zeros_like(body.low[:, 0]).index_add(0, owner[meet], torch.where(depth < DEEP, depth**2 / 2, DEEP * (depth - DEEP / 2)))
+    standing = torch.nonzero(occupied.flatten())[:, 0]
+    phi = phi.index_add(0, standing // slots, outside(_from_rows(listed[standing]), rooms, standing // slots) / 2)
+    if sweeps is None:
+        return phi
+    moved = torch.nonzero(real.flatten())[:, 0]
+    room = moved // real[0].numel()
+    return phi.index_add(0, room, outside(_from_rows(listed[first_sweep + moved]), rooms, room) / 4)
+
+
+def _to_rows(prisms: Prisms) -> Tensor:
+    """Prisms (..., ) as the rows (n, 8) of a list."""
+    return torch.cat([prisms.centre, prisms.half, prisms.axis, prisms.low[..., None], prisms.high[..., None]], -1).flatten(0, -2)
+
+
+def _from_rows(rows: Tensor) -> Prisms:
+    """Undo `_to_rows`."""
+    centre, half, axis, low, high = rows.split([2, 2, 2, 1, 1], -1)
+    return Prisms(centre, half, axis, low[..., 0], high[..., 0])
+
+
+def _numbers(like: Tensor, first: int) -> Tensor:
+    """Return the places in the list of what `like` (B, ...) selects from, counted from `first`."""
+    return torch.arange(first, first + like.numel(), device=like.device).view_as(like)
+
+
+def _select_pairs(chosen: Tensor, left: Tensor, right: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    """Return the places of both things of each chosen pair, and its room; `chosen` (B, ...), to whose shape the places broadcast."""
+    return left.expand_as(chosen)[chosen], right.expand_as(chosen)[chosen], torch.nonzero(chosen)[:, 0]
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,11 +16,9 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from pipeline import seeds
-from pipeline.diffusion.context import CategoryBounds
-from pipeline.diffusion.floor import KINDS, Floor
+from pipeline.diffusion.context import KINDS, CategoryBounds, Floor
 from pipeline.diffusion.settings import InventorySettings
-from pipeline.tensors import Checkpoint
+from pipeline.tensors import Checkpoint, advance, cosine, generator, initial
 
 MOST = 12  # of one class in one room; more are counted as this
 ROOM_FEATURES = 6 + 2 * (len(KINDS) - 1)
@@ -149,11 +147,6 @@ def room_features(floor: Floor, height: float) -> NDArray[np.float32]:
     return np.array([*shape, *openings], np.float32)
 
 
-def counts_of(classes: NDArray[np.int64], number: int) -> NDArray[np.int64]:
-    """Return how many objects (C,) of each class there are."""
-    return np.bincount(classes, minlength=number)[:number]
-
-
 class Holdings(NamedTuple):
     """What n rooms hold: features (n, F), types (n,), counts (n, C)."""
 
@@ -164,9 +157,7 @@ class Holdings(NamedTuple):
 
 def initial_inventory(contents: Holdings, types: int, width: int, seed: int) -> Inventory:
     """Return an inventory model that knows how often each room type holds how many of a class, and nothing else yet."""
-    with torch.random.fork_rng(devices=[]):
-        torch.manual_seed(seeds.key(seed, "inventory-init") % 2**63)
-        net = Inventory(contents.counts.shape[1], types, width)
+    net = initial(lambda: Inventory(contents.counts.shape[1], types, width), seed, "inventory-init")
     counts, layouts = torch.from_numpy(contents.counts), torch.from_numpy(contents.layouts)
     with torch.no_grad():
         for k in range(types):
@@ -183,20 +174,15 @@ def fit(
 
     With a `checkpoint` it goes on from there, and is kept there `every` so many steps.
     """
-    rng = torch.Generator().manual_seed(seeds.key(seed, "inventory") % 2**63)
+    rng = generator(seed, "inventory")
     features, layouts, counts = (torch.from_numpy(part) for part in contents)
     optimiser = torch.optim.AdamW(net.parameters(), weight_decay=1e-3)
     done = checkpoint.resume(net, optimiser, rng) if checkpoint else 0
     for step in range(done, settings.steps):
-        for group in optimiser.param_groups:
-            group["lr"] = settings.learning_rate * min(1.0, (step + 1) / 50) * 0.5 * (1 + float(np.cos(np.pi * step / settings.steps)))
         rows = torch.randint(len(features), (min(settings.batch, len(features)),), generator=rng)
         known = torch.rand(len(rows), generator=rng) < settings.count_known
-        loss = -net(features[rows], layouts[rows], counts[rows], known).mean()
-        optimiser.zero_grad()
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(net.parameters(), 1.0)
-        optimiser.step()
+        (-net(features[rows], layouts[rows], counts[rows], known).mean()).backward()
+        advance(optimiser, settings.learning_rate * min(1.0, (step + 1) / 50) * cosine(step / settings.steps), 1.0)
         if checkpoint and (step + 1) % every == 0:
             checkpoint.keep(step + 1, net, optimiser, rng)
     return net.eval()

@@ -13,7 +13,7 @@ from pipeline import taxonomy
 from pipeline.diffusion.batch import collate
 from pipeline.diffusion.checkpoint import FORMAT, Header, load_weights, require_vocabulary
 from pipeline.diffusion.codec import Codec, Normalisation
-from pipeline.diffusion.inventory import Holdings, Inventory, counts_of, initial_inventory, room_features
+from pipeline.diffusion.inventory import Holdings, Inventory, initial_inventory, room_features
 from pipeline.diffusion.process_group import ProcessGroup
 from pipeline.diffusion.rooms import SHAPES, TABLES, Example, Sets, layout_weights, read_sets, stacked
 from pipeline.diffusion.set_transformer import SetTransformer
@@ -59,10 +59,10 @@ def open_job(root: Path, settings: TrainSettings, seed: int, group: ProcessGroup
     per_epoch = max(1, sum(len(e.classes) for e in sets.train) // settings.objects)
     total = settings.epochs * per_epoch if settings.epochs else settings.steps
     trainer = Trainer(seed, header, settings, total, per_epoch, device, group, start)
-    key = digest([FORMAT, asdict(settings), asdict(header), seed, threads, group.size, device.type, inputs(root, settings)])
+    files = {name: sha256_file(root / name) for name in (*TABLES, SHAPES, *([RELEASED] if settings.start == "released" else []))}
+    key = digest([FORMAT, asdict(settings), asdict(header), seed, threads, group.size, device.type, files])
     checkpoint = Checkpoint(root / CHECKPOINT, key)
-    if found := checkpoint.load():
-        trainer.restore(*found)
+    trainer.done = checkpoint.resume(trainer.nets, trainer.optimiser)
     data, checked = (rooms_of(part, header, device) for part in (sets.train, sets.val or sets.train[:64]))
     return Job(trainer, data, checked, sets, header, inventory, checkpoint, Checkpoint(root / INVENTORY_CHECKPOINT, key))
 
@@ -101,9 +101,4 @@ def holdings(examples: Sequence[Example], header: Header) -> Holdings:
     """Return what rooms hold, as the inventory model learns it."""
     features = np.stack([room_features(e.floor, e.context.height) for e in examples])
     layouts = np.array([e.layout for e in examples], np.int64)
-    return Holdings(features, layouts, np.stack([counts_of(e.classes, len(header.norm.classes)) for e in examples]))
-
-
-def inputs(root: Path, settings: TrainSettings) -> dict[str, str]:
-    """Return the digests of the files that training depends on."""
-    return {name: sha256_file(root / name) for name in (*TABLES, SHAPES, *([RELEASED] if settings.start == "released" else []))}
+    return Holdings(features, layouts, np.stack([np.bincount(e.classes, minlength=len(header.norm.classes)) for e in examples]))

@@ -7,7 +7,7 @@ from torch import Tensor
 
 from pipeline.diffusion.batch import Objects, RoomBatch
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
-from pipeline.diffusion.constraints import articulated_collision
+from pipeline.diffusion.guidance import articulated_collision
 from pipeline.diffusion.relations import boxes_of
 from pipeline.diffusion.schedule import FIRST, LAST, alpha_sigma, lambda_of
 from pipeline.diffusion.set_transformer import SetTransformer

@@ -4,7 +4,7 @@ Muon moves a matrix by its momentum with all singular values made 1, so that eve
 pace; docs/model.md has figures of both. `optimiser: adamw` is AdamW throughout.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import torch
 from torch import Tensor, nn
@@ -24,56 +24,37 @@ QUINTICS = (
 )
 
 
-class Optimiser:
-    """Owns the moments of a net's parameters."""
+class Optimiser(torch.optim.Optimizer):
+    """Owns the moments of a net's parameters: AdamW's, and the momenta of the matrices."""
 
     def __init__(self, net: nn.Module, settings: TrainSettings) -> None:
-        named, width, weight_decay = dict(net.named_parameters()), settings.model.width, settings.weight_decay
-        self.matrices = {name: p for name, p in named.items() if settings.optimiser == "muon" and is_hidden(name, p, width)}
-        self.momenta = {name: torch.zeros_like(p) for name, p in self.matrices.items()}
-        self.others = {name: p for name, p in named.items() if name not in self.matrices}
-        self.width, self.weight_decay = width, weight_decay
-        self.adam = torch.optim.AdamW(self.others.values(), weight_decay=weight_decay, betas=BETAS, fused=True)
+        named, self.width = dict(net.named_parameters()), settings.model.width
+        super().__init__(named.values(), {"lr": 0.0, "fused": True})
+        self.matrices = {name: p for name, p in named.items() if settings.optimiser == "muon" and is_hidden(name, p, self.width)}
+        others = [p for name, p in named.items() if name not in self.matrices]
+        self.adam = torch.optim.AdamW(others, weight_decay=0.0, betas=BETAS, fused=True)
 
     @torch.no_grad()
-    def step(self, rate: float) -> None:
-        """Move the parameters along their gradients at a learning rate, and forget the gradients."""
-        for group in self.adam.param_groups:
-            group["lr"] = rate
+    def step(self, closure: None = None) -> None:  # type: ignore[override]  # noqa: ARG002
+        """Move the parameters along their gradients, at the learning rate of the group."""
+        rate = self.param_groups[0]["lr"]
+        self.adam.state, self.adam.param_groups[0]["lr"] = self.state, rate
         self.adam.step()
-        alike: dict[tuple[int, int], list[tuple[Tensor, Tensor]]] = {}
-        for name, p in self.matrices.items():
-            gradient, momentum = p.grad, self.momenta[name]
-            if gradient is None:
+        alike: dict[torch.Size, list[tuple[Tensor, Tensor]]] = {}
+        for p in self.matrices.values():
+            if p.grad is None:
                 continue
-            momentum.lerp_(gradient, 1 - MOMENTUM)
-            ahead = gradient.lerp(momentum, MOMENTUM)  # Nesterov's: where the momentum will be
+            if not self.state[p]:
+                self.state[p]["momentum"] = torch.zeros_like(p)
+            momentum = self.state[p]["momentum"]
+            momentum.lerp_(p.grad, 1 - MOMENTUM)
+            ahead = p.grad.lerp(momentum, MOMENTUM)  # Nesterov's: where the momentum will be
             for part, move in zip(squares(p, self.width), squares(ahead, self.width), strict=True):
-                alike.setdefault((part.shape[0], part.shape[1]), []).append((part, move))
+                alike.setdefault(part.shape, []).append((part, move))
         for shape, pairs in alike.items():
             moves = orthogonalise(torch.stack([move for _, move in pairs])) * (rate * AS_LARGE * max(shape) ** 0.5)
             for (part, _), move in zip(pairs, moves, strict=True):
-                part.mul_(1 - rate * self.weight_decay).sub_(move)
-        for p in (*self.matrices.values(), *self.others.values()):
-            p.grad = None
-
-    def moments(self) -> dict[str, Tensor]:
-        """Return the moments by `<parameter>/<kind>`, for a checkpoint."""
-        names, state = list(self.others), self.adam.state_dict()["state"]
-        tensors = {f"{names[i]}/{kind}": value for i, entry in state.items() for kind, value in entry.items()}
-        return tensors | {f"{name}/momentum": value for name, value in self.momenta.items()}
-
-    def restore(self, moments: Mapping[str, Tensor]) -> None:
-        """Take up what `moments` gave."""
-        order = {name: i for i, name in enumerate(self.others)}
-        state: dict[int, dict[str, Tensor]] = {}
-        for key, value in moments.items():
-            name, kind = key.rsplit("/", 1)
-            if name in self.momenta:
-                self.momenta[name].copy_(value)
-            else:
-                state.setdefault(order[name], {})[kind] = value
-        self.adam.load_state_dict({**self.adam.state_dict(), "state": state})
+                part.sub_(move)
 
 
 def is_hidden(name: str, parameter: Tensor, width: int) -> bool:

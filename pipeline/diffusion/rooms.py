@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from pipeline import tables, taxonomy
 from pipeline.diffusion.codec import CHANNELS, LATENT
-from pipeline.diffusion.context import RoomContext, RoomOpening
-from pipeline.diffusion.floor import Floor, floor_tokens
+from pipeline.diffusion.context import Floor, RoomContext, RoomOpening, floor_tokens
 from pipeline.errors import ContentError
 from schemas import ASSET_JOINTS, LATENTS, OBJECTS, OPENINGS, ROOMS, SCENES
 
@@ -121,22 +120,16 @@ def sets_of(
     for room in rows["rooms"]:
         scene, name = scenes[room["scene_id"]], (room["scene_id"], room["room_id"])
         own = [o for o in objects.get(name, []) if o["category"] in known]
-        reason = _reason(room, own, layouts, slots)
-        if reason:
-            left[reason] += 1
+        if room["layout_type"] not in layouts:
+            left["no-layout-type"] += 1
+            continue
+        if not 0 < len(own) <= slots:
+            left["more-objects-than-slots" if own else "no-objects"] += 1
             continue
         context = context_of(room, openings.get((room["scene_id"],), []), room["level"] * float(scene["storey_height"]))
         layout = layouts.index(room["layout_type"])
         by_split[scene["split"]].append(example_of("/".join(name), scene["split"], layout, context, own, classes, latents, sweeps))
     return Sets(tuple(by_split["train"]), tuple(by_split["val"]), tuple(by_split["test"]), dict(sorted(left.items())))
-
-
-def _reason(room: Row, rows: Sequence[Row], layouts: tuple[str, ...], slots: int) -> str:
-    if room["layout_type"] not in layouts:
-        return "no-layout-type"
-    if not rows:
-        return "no-objects"
-    return "more-objects-than-slots" if len(rows) > slots else ""
 
 
 def _group_rows(rows: Iterable[Row], *keys: str) -> dict[tuple[Any, ...], list[Row]]:

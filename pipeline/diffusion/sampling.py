@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,7 @@ from pipeline import seeds, taxonomy
 from pipeline.diffusion.batch import RoomBatch, room_batch
 from pipeline.diffusion.checkpoint import Header, load_weights
 from pipeline.diffusion.codec import CHANNELS
-from pipeline.diffusion.context import Library, Proposal, RoomContext
-from pipeline.diffusion.floor import Floor, floor_tokens
+from pipeline.diffusion.context import Floor, Library, Proposal, RoomContext, floor_tokens
 from pipeline.diffusion.guidance import Guidance
 from pipeline.diffusion.inventory import DRAWS, Ask, Inventory, draw_inventories, room_features
 from pipeline.diffusion.schedule import denoise, levels, paper_levels
@@ -133,9 +133,6 @@ class Sampler:
                 before = self.net.expected(x, classes, level * ones, rooms, code, before)
             return before
 
-        def guide(x0: Tensor, level: float) -> Tensor:
-            return guidance.step(self.net.codec, x0, level)
-
         rngs = [seeds.generator(self.seed, "diffusion", *key) for key in keys]
 
         def noise() -> Tensor:
@@ -143,7 +140,7 @@ class Sampler:
             return torch.from_numpy(np.stack([rng.standard_normal(shape, np.float32) for rng in rngs])).to(device)
 
         count = self.settings.evaluations
-        return denoise(expect, guide, noise, levels(count) if count else paper_levels(), self.settings.eta)
+        return denoise(expect, partial(guidance.step, self.net.codec), noise, levels(count) if count else paper_levels(), self.settings.eta)
 
     def _layouts(self, rooms: Sequence[RoomContext]) -> list[int]:
         """Return the indices of the rooms' types."""

@@ -55,9 +55,8 @@ class TrainSettings:
     optimiser: Literal["muon", "adamw"] = "muon"
     learning_rate: float = 4e-3
     warmup: int = 60
-    decay: Literal["cosine", "linear", "step"] = "cosine"
+    decay: Literal["cosine", "step"] = "cosine"
     decay_every: int = 20000  # step decay: epochs between halvings
-    weight_decay: float = 0.0
     clip: float = 1.0
     ema: float = 0.998
     latent_weight: float = 0.25  # weight of the shape latent's channels in eq. 1

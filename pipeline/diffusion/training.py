@@ -1,9 +1,11 @@
-"""Training of the denoiser: a loop that yields, so that the caller logs, saves and stops."""
+"""Training of the denoiser: a loop that yields, so that the caller logs and stops; its live metrics. Neither git nor network is touched."""
 
 import copy
-import math
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +13,6 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from pipeline import seeds
 from pipeline.diffusion.batch import BUCKETS, Objects, RoomBatch, bucket_of, moved_objects, moved_rooms, reflections
 from pipeline.diffusion.checkpoint import Header, build_net
 from pipeline.diffusion.loss import Draw, denoising_loss, draw
@@ -19,8 +20,10 @@ from pipeline.diffusion.optimiser import Optimiser
 from pipeline.diffusion.process_group import ALONE, ProcessGroup
 from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import TrainSettings
+from pipeline.tensors import Checkpoint, advance, cosine, generator, initial
 
 EARLY = 0.5  # weight of the loss of all passes but the last
+COLUMNS = ("step", "loss", "geometry", "shape", "rate")  # of plots/loss.csv
 LEVELS = (-3.0, -1.0, 0.5, 2.0, 4.0, 6.0)  # lambda at which validation asks
 
 
@@ -43,6 +46,9 @@ class Rooms(NamedTuple):
     counts: NDArray[np.int64]
 
 
+Log = Callable[[Step, Mapping[str, Mapping[str, float]]], None]
+
+
 class Trainer:
     """Owns the state of a training run: weights, their moving average, the optimiser's moments, the step."""
 
@@ -57,23 +63,19 @@ class Trainer:
         group: ProcessGroup = ALONE,
         start: SetTransformer | None = None,
     ) -> None:
-        with torch.random.fork_rng(devices=[]):
-            torch.manual_seed(seeds.key(seed, "denoiser-init") % 2**63)
-            self.net = (start or build_net(header)).to(device)
+        self.net = (start or initial(lambda: build_net(header), seed, "denoiser-init")).to(device)
         self.average = copy.deepcopy(self.net).eval().requires_grad_(False)
-        self.seed, self.settings, self.total, self.per_epoch, self.device, self.done = seed, settings, total, per_epoch, device, 0
-        self.group = group
+        self.nets = nn.ModuleDict({"net": self.net, "average": self.average})  # what a checkpoint keeps
         self.optimiser = Optimiser(self.net, settings)
+        self.seed, self.settings, self.total, self.per_epoch, self.device, self.group = seed, settings, total, per_epoch, device, group
+        self.done = 0
 
     def rate(self, step: int) -> float:
-        """Learning rate at a step: a short warm-up, then a cosine or a straight line to zero, or halving every `decay_every` epochs."""
+        """Learning rate at a step: a short warm-up, then a cosine to zero, or halving every `decay_every` epochs."""
         s = self.settings
         warm = min(1.0, (step + 1) / max(s.warmup, 1))
-        if s.decay == "linear":
-            return s.learning_rate * warm * (1 - step / self.total)
-        if s.decay == "cosine":
-            return s.learning_rate * warm * 0.5 * (1 + math.cos(math.pi * step / self.total))
-        return s.learning_rate * warm * 0.5 ** (step // self.per_epoch // s.decay_every)
+        left = cosine(step / self.total) if s.decay == "cosine" else 0.5 ** (step // self.per_epoch // s.decay_every)
+        return s.learning_rate * warm * left
 
     def draw_rows(self, rng: torch.Generator, data: Rooms) -> tuple[Tensor, int]:
         """Draw the rows of a step's rooms by their weights, and the number of slots that they get.
@@ -95,7 +97,7 @@ class Trainer:
         changes nothing but the order of sums.
         """
         s = self.settings
-        rng = torch.Generator().manual_seed(seeds.key(self.seed, "train-step", self.done) % 2**63)
+        rng = generator(self.seed, "train-step", self.done)
         rows, slots = self.draw_rows(rng, data)
         reflection = reflections(rng, len(rows)).to(self.device)
         drawn = draw(rng, len(rows), slots)
@@ -111,23 +113,11 @@ class Trainer:
         rate = self.rate(self.done)
         total.backward()
         terms = self.group.average(list(self.net.parameters()), torch.stack([total, geometry, shape]).detach())
-        torch.nn.utils.clip_grad_norm_(self.net.parameters(), s.clip)
-        self.optimiser.step(rate)
+        advance(self.optimiser, rate, s.clip)
         follow(self.average, self.net, s.ema, self.done)
         self.done += 1
         loss, mean_geometry, mean_shape = terms.tolist()
         return Step(self.done, loss, mean_geometry, mean_shape, rate)
-
-    def groups(self) -> dict[str, dict[str, Tensor]]:
-        """Return everything that a checkpoint holds."""
-        return {"net": dict(self.net.state_dict()), "average": dict(self.average.state_dict()), "optimiser": self.optimiser.moments()}
-
-    def restore(self, done: int, groups: dict[str, dict[str, Tensor]]) -> None:
-        """Continue from a checkpoint."""
-        self.net.load_state_dict(groups["net"])
-        self.average.load_state_dict(groups["average"])
-        self.optimiser.restore(groups.get("optimiser", {}))
-        self.done = done
 
 
 @torch.no_grad()
@@ -137,12 +127,12 @@ def follow(average: nn.Module, net: nn.Module, ema: float, done: int) -> None:
     torch._foreach_lerp_(list(average.parameters()), list(net.parameters()), 1 - decay)
 
 
-def train(trainer: Trainer, data: Rooms, save: Callable[[Trainer], None] | None = None) -> Iterator[Step]:
-    """Train to the end, yielding each step; `save` is called every `checkpoint_every` steps and at the end."""
+def train(trainer: Trainer, data: Rooms, checkpoint: Checkpoint | None = None) -> Iterator[Step]:
+    """Train to the end, yielding each step; the state is kept every `checkpoint_every` steps and at the end."""
     while trainer.done < trainer.total:
         yield trainer.step(data)
-        if save and (trainer.done % trainer.settings.checkpoint_every == 0 or trainer.done == trainer.total):
-            save(trainer)
+        if checkpoint and (trainer.done % trainer.settings.checkpoint_every == 0 or trainer.done == trainer.total):
+            checkpoint.keep(trainer.done, trainer.nets, trainer.optimiser)
 
 
 @torch.no_grad()
@@ -155,7 +145,7 @@ def validation(trainer: Trainer, data: Rooms) -> dict[str, dict[str, float]]:
     plain = replace(trainer.settings, constraint=False)  # validation measures denoising alone
     slots = torch.from_numpy(bucket_of(data.counts))
     for level in LEVELS:
-        rng = torch.Generator().manual_seed(seeds.key(trainer.seed, "validate", round(10 * level) + 100) % 2**63)
+        rng = generator(trainer.seed, "validate", round(10 * level) + 100)
         terms = []
         for size in sorted(set(slots.tolist())):
             for rows in torch.nonzero(slots == size)[:, 0].split(max(1, trainer.settings.objects // size)):
@@ -166,3 +156,32 @@ def validation(trainer: Trainer, data: Rooms) -> dict[str, dict[str, float]]:
         mean = torch.cat(terms, 1).mean(1).tolist()
         losses[f"lambda {level:g}"] = dict(zip(("geometry", "shape"), (round(v, 6) for v in mean), strict=True))
     return losses
+
+
+@contextmanager
+def live_log(root: Path, resume: int) -> Iterator[Log]:
+    """Yield what writes a step, and the validation losses as they stand, to plots/loss.csv and DVCLive. A resumed run keeps the rows up to the step it goes on from."""
+    from dvclive.live import Live
+
+    os.environ.setdefault("DVC_NO_ANALYTICS", "1")
+    path = root / "plots" / "loss.csv"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    before = path.read_text(encoding="utf-8").splitlines() if resume and path.is_file() else []
+    kept = [row for row in before if row[:1].isdigit() and int(row.split(",")[0]) <= resume]
+    with (
+        path.open("w", encoding="utf-8") as file,
+        Live(str(root / "dvclive"), resume=bool(resume), save_dvc_exp=False, dvcyaml=None, report=None, monitor_system=False) as live,
+    ):
+
+        def log(step: Step, by_level: Mapping[str, Mapping[str, float]]) -> None:
+            values = [step.done, round(step.loss, 6), round(step.geometry, 6), round(step.shape, 6), round(step.rate, 8)]
+            print(*values, sep=",", file=file, flush=True)
+            live.step = step.done
+            for name, value in zip(COLUMNS[1:], values[1:], strict=True):
+                live.log_metric(f"train/{name}", value, plot=True)
+            for level, terms in by_level.items():
+                for name, value in terms.items():
+                    live.log_metric(f"val/{name}/{level}", value, plot=False)
+
+        print(",".join(COLUMNS), *kept, sep="\n", file=file)
+        yield log

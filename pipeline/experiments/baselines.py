@@ -10,18 +10,19 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
 
 from pipeline import seeds
-from pipeline.baselines.settings import BaselineSettings
+from pipeline.baselines.rooms import BaselineSettings
 from pipeline.diffusion.codec import proposals_of
 from pipeline.diffusion.context import Proposal, RoomContext
 from pipeline.diffusion.rooms import Example
-from pipeline.experiments.rooms import spread
-from pipeline.metrics import articulation, category, collision, relations
+from pipeline.experiments.settings import spread
+from pipeline.metrics import collision, relations
 from pipeline.metrics.intervals import bootstrap, rate
 from pipeline.metrics.layout_features import features
 from pipeline.metrics.rows import Row
-from pipeline.metrics.two_samples import forest_accuracy
+from pipeline.metrics.two_samples import ckl, forest_accuracy
 from pipeline.relations.arrangement import Arrangement, RoomOpening, make_arrangement
 from pipeline.relations.model import Relations
 
@@ -46,8 +47,7 @@ def cases_of(examples: Sequence[Example], classes: Sequence[str]) -> list[Case]:
 
 def holds(case: Case, count: int) -> bool:
     """Tell whether a room is large enough to be asked for so many things."""
-    x, y = case.context.polygon.T
-    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2 >= FLOOR * count
+    return bool(shapely.Polygon(case.context.polygon).area >= FLOOR * count)
 
 
 def compare_models(
@@ -91,9 +91,9 @@ def figures(
     return {
         "rooms": len(drafts),
         "objects": bootstrap(rng, [float(len(d)) for d in drafts]),
-        "r_acoll": articulation.acoll(rng, rows, "heuristic"),
+        "r_acoll": collision.acoll(rng, rows, "heuristic"),
         "collision": collision.rates(rows)["bbox"],
-        "ckl": category.ckl(true, rows, sorted(opens)),
+        "ckl": ckl(true, rows, sorted(opens)),
         "chance": {str(n): success([d for case, d in zip(cases, drafts, strict=True) if holds(case, n)], n) for n in counts},
     }
 
@@ -109,20 +109,17 @@ def liveable(
     rates = relations.compare(rng, sets, known)["rates"]
     names = [case.name for case in cases]
     real = features(sets["real"])
-    return {
-        name: {"relations": {rule: of[name] for rule, of in rates.items()}}
-        | ({} if name == "real" else {"sca": forest_accuracy(seed, real, features(rooms), names, names)})
-        for name, rooms in sets.items()
-    }
+    accuracies = {name: forest_accuracy(seed, real, features(rooms), names, names) for name, rooms in sets.items() if name != "real"}
+    told = {name: {"relations": {rule: of[name] for rule, of in rates.items()}} for name in sets}
+    return {name: own | ({"sca": accuracies[name]} if name in accuracies else {}) for name, own in told.items()}
 
 
 def arrangement(case: Case, draft: Sequence[Proposal]) -> Arrangement:
     """Return a draft as the room metrics read it."""
-    things = [(p.category, p.position, p.yaw, p.size) for p in draft]
     context = case.context
-    return make_arrangement(
-        case.name, context.layout_type, context.polygon, things, [RoomOpening(g.kind, g.segment) for g in context.openings]
-    )
+    things = [(p.category, p.position, p.yaw, p.size) for p in draft]
+    openings = [RoomOpening(opening.kind, opening.segment) for opening in context.openings]
+    return make_arrangement(case.name, context.layout_type, context.polygon, things, openings)
 
 
 def rooms_with_target(cases: Sequence[Case], count: int, rooms: int) -> list[RoomContext]:

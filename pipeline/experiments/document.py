@@ -2,22 +2,28 @@
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from pipeline import seeds, tables
+import numpy as np
+from PIL import Image
+
+from pipeline import seeds, tables, taxonomy
+from pipeline.entities.asset import Asset
 from pipeline.entities.home import Home
 from pipeline.errors import SfgenError
 from pipeline.execution import cores, map_jobs
-from pipeline.experiments import lineup
 from pipeline.experiments.dataset import reject_rows, shipped_rows
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.export import ExportFolder, export_home, home_stages
 from pipeline.homes.factory import Factory, open_factory
 from pipeline.homes.rows import homes_of
 from pipeline.manifest import write_bytes, write_with
+from pipeline.preview.sheet import contact_sheet
+from pipeline.preview.top import top_view
 from pipeline.report import baselines, calibration, sections
 from pipeline.report.page import Picture, Section, render
 from pipeline.report.plots import Curve, lines
@@ -27,22 +33,24 @@ from pipeline.shards import read_header
 from schemas import OBJECTS, OPENINGS, ROOMS, SCENES
 
 SHOWN = 24  # top views on the page
+EACH = 5  # rooms of each type and kind in a line-up
+CELL = 190  # pixels of its pictures
+Room = tuple[Home, str]  # a home, and the room of it that is shown
 
 
 def write_report(root: Path, figures: Mapping[str, Any], factory: Factory, settings: MetricsSettings) -> None:
     """Write report/index.html with its pictures, from the figures and the dataset of this checkout."""
     folder = root / "report"
     shutil.rmtree(folder, ignore_errors=True)
-    homes = dataset_homes(root)
+    homes = homes_of({table.name: shipped_rows(root / "data" / "shards", table) for table in (SCENES, ROOMS, OPENINGS, OBJECTS)})
     gallery, missing = path_traced(root, folder, homes, factory.seed, settings)
     model, no_model = in_3d(root, folder, homes)
     views = [Picture(_copy_preview(root, folder, home), f"{home.scene_id}: {home.prompt}") for home in homes[:SHOWN]]
     rates = {name: _plot(folder, name, curves, **labels) for name, (curves, labels) in _plots(figures).items()}
-    loss = (
-        [_plot(folder, "loss", [_loss(root)], title="training", x="step", y="loss", log=True)]
-        if (root / "plots" / "loss.csv").is_file()
-        else []
-    )
+    trained = (root / "plots" / "loss.csv").is_file()
+    loss = [_plot(folder, "loss", [_loss(root)], title="training", x="step", y="loss", log=True)] if trained else []
+    compared = _json(root / "metrics" / "calibration.json")
+    fits = [_picture(folder, name, png, name.replace("_", ", ")) for name, png in calibration.plots(compared).items()] if compared else []
     chapters = [
         Section("Views", [why for why in (no_model, missing) if why], pictures=[*model, *gallery], wide=True),
         sections.dataset_section(
@@ -56,7 +64,7 @@ def write_report(root: Path, figures: Mapping[str, Any], factory: Factory, setti
         baselines.baselines_section(_json(root / "metrics" / "baselines.json")),
         realism_section(figures["realism"], figures["coherence"], lineups(root, folder, homes, factory, settings)),
         sections.training_section(_json(root / "metrics" / "encode.json"), _json(root / "metrics" / "train.json"), loss),
-        _calibration(folder, _json(root / "metrics" / "calibration.json")),
+        calibration.calibration_section(compared, fits) if compared else None,
         sections.reject_section(reject_rows(root)),
     ]
     write_bytes(folder / "index.html", render("Homes for robots", _lead(root), [c for c in chapters if c]).encode())
@@ -76,7 +84,7 @@ def lineups(root: Path, folder: Path, homes: Sequence[Home], factory: Factory, s
     all_rooms = (*rows[ROOMS.name], *shipped_rows(root / "data" / "shards", ROOMS))
     types = {(row["scene_id"], row["room_id"]): row["layout_type"] for row in all_rooms}
     rng = seeds.generator(factory.seed, "lineup")
-    images = lineup.lineup(rng, lineup.by_type(homes_of(rows), types), lineup.by_type(homes, types), factory.library)
+    images = lineup(rng, by_type(homes_of(rows), types), by_type(homes, types), factory.library)
     pictures = []
     for name, caption, image in zip(
         ("lineup", "lineup_told"), ("which five of each row are made?", "the answer"), images or (), strict=False
@@ -86,19 +94,44 @@ def lineups(root: Path, folder: Path, homes: Sequence[Home], factory: Factory, s
     return pictures
 
 
-def _calibration(folder: Path, comparison: Mapping[str, Any]) -> Section | None:
-    if not comparison:
+def alone(home: Home, room_id: str) -> Home:
+    """Return the home that is left when one room is cut out of it, with its windows: sources draw doors in different ways, and leaves would tell."""
+    room = replace(home.plan.room(room_id), level=0)
+    lift = np.array([0.0, 0.0, home.plan.room(room_id).level * home.plan.storey_height])
+    openings = tuple(replace(o, level=0) for o in home.plan.openings if o.kind == "window" and room_id in o.rooms)
+    placed = tuple(replace(p, position=p.position - lift) for p in home.in_room(room_id))
+    return replace(home, plan=replace(home.plan, rooms=(room,), openings=openings, entrance=room_id), placements=placed)
+
+
+def lineup(
+    rng: np.random.Generator, real: Mapping[str, Sequence[Room]], generated: Mapping[str, Sequence[Room]], assets: Mapping[str, Asset]
+) -> tuple[Image.Image, Image.Image] | None:
+    """Return the two pictures of rooms by type, a row for each type that both have; None where there is none."""
+    hidden: list[tuple[str, Image.Image]] = []
+    answers: list[tuple[str, Image.Image]] = []
+    for kind in (kind for kind in taxonomy.load().layout_types if real.get(kind) and generated.get(kind)):
+        row = [
+            (name, top_view(alone(*room), assets, CELL, reaches=False))
+            for name, rooms in (("real", real), ("made", generated))
+            for room in (rooms[kind][k] for k in sorted(rng.permutation(len(rooms[kind]))[:EACH]))
+        ]
+        blank = Image.new("RGB", (CELL, CELL), (244, 244, 241))
+        row += [("", blank)] * (2 * EACH - len(row))
+        answers += [(f"{name} {kind.replace('_', ' ')}" if name else "", picture) for name, picture in row]
+        hidden += [("", row[k][1]) for k in rng.permutation(len(row))]
+    if not answers:
         return None
-    pictures = []
-    for name, png in calibration.plots(comparison).items():
-        write_bytes(folder / "plots" / f"{name}.png", png)
-        pictures.append(Picture(f"plots/{name}.png", name.replace("_", ", ")))
-    return calibration.calibration_section(comparison, pictures)
+    return contact_sheet(hidden, 2 * EACH, CELL), contact_sheet(answers, 2 * EACH, CELL)
 
 
-def dataset_homes(root: Path) -> list[Home]:
-    """Return the homes of data/shards."""
-    return homes_of({table.name: shipped_rows(root / "data" / "shards", table) for table in (SCENES, ROOMS, OPENINGS, OBJECTS)})
+def by_type(homes: Iterable[Home], types: Mapping[tuple[str, str], str]) -> dict[str, list[Room]]:
+    """Return the furnished rooms of homes by their layout type; `types` by (scene_id, room_id)."""
+    rooms: dict[str, list[Room]] = {}
+    for home in homes:
+        for room in home.plan.rooms:
+            if home.in_room(room.room_id):
+                rooms.setdefault(types.get((home.scene_id, room.room_id), ""), []).append((home, room.room_id))
+    return rooms
 
 
 def in_3d(root: Path, folder: Path, homes: Sequence[Home]) -> tuple[list[Picture], str]:
@@ -174,8 +207,12 @@ def _loss(root: Path) -> Curve:
 
 
 def _plot(folder: Path, name: str, curves: Sequence[Curve], **labels: Any) -> Picture:
-    write_bytes(folder / "plots" / f"{name}.png", lines(curves, **labels))
-    return Picture(f"plots/{name}.png", str(labels["title"]))
+    return _picture(folder, name, lines(curves, **labels), str(labels["title"]))
+
+
+def _picture(folder: Path, name: str, png: bytes, caption: str) -> Picture:
+    write_bytes(folder / "plots" / f"{name}.png", png)
+    return Picture(f"plots/{name}.png", caption)
 
 
 def _json(path: Path) -> dict[str, Any]:

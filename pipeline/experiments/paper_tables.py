@@ -10,7 +10,8 @@ from pipeline.entities.asset import Asset
 from pipeline.experiments.settings import MetricsSettings
 from pipeline.experiments.trials import Condition, Trial
 from pipeline.homes.rows import Row
-from pipeline.metrics import articulation, category, collision, control, reach
+from pipeline.metrics import collision, control, reach
+from pipeline.metrics.two_samples import ckl
 
 ALL_PLAIN, ALL_GUIDED = "all_plain", "all_guided"  # the conditions that furnish every room of the split
 Trials = Mapping[str, Trial]
@@ -62,24 +63,21 @@ def walkable_table(trials: Trials, taus: Sequence[float], rooms: int) -> Json:
     return table
 
 
-def articulation_table(rng: np.random.Generator, trials: Trials, sweeps: articulation.Sweeps, assets: Mapping[str, Asset]) -> Json:
+def articulation_table(rng: np.random.Generator, trials: Trials, sweeps: collision.Sweeps, assets: Mapping[str, Asset]) -> Json:
     """Return R_acoll, R_reach, Col_obj and openable objects: without guidance, with the paper's heuristic, with the joints' sweeps."""
-    table: Json = {}
-    for name in ("plain", "heuristic", "guided"):
-        table[f"{name}_drafted"] = figures(rng, trials[name].drafted, sweeps, assets)
-    for name in ("plain", "guided"):
-        table[f"{name}_shipped"] = figures(rng, trials[name].shipped, sweeps, assets)
-    return table
+    drafted = {f"{name}_drafted": trials[name].drafted for name in ("plain", "heuristic", "guided")}
+    shipped = {f"{name}_shipped": trials[name].shipped for name in ("plain", "guided")}
+    return {name: figures(rng, rows, sweeps, assets) for name, rows in (drafted | shipped).items()}
 
 
-def figures(rng: np.random.Generator, rows: Mapping[str, list[Row]], sweeps: articulation.Sweeps, assets: Mapping[str, Asset]) -> Json:
+def figures(rng: np.random.Generator, rows: Mapping[str, list[Row]], sweeps: collision.Sweeps, assets: Mapping[str, Asset]) -> Json:
     """Return every figure of articulation and collision for rows of rooms, objects and joints."""
     return {
-        "r_acoll_heuristic": articulation.acoll(rng, rows["objects"], "heuristic"),
-        "r_acoll_joints": articulation.acoll(rng, rows["objects"], "joints", sweeps),
-        "swept": articulation.swept(rows["joints"]),
+        "r_acoll_heuristic": collision.acoll(rng, rows["objects"], "heuristic"),
+        "r_acoll_joints": collision.acoll(rng, rows["objects"], "joints", sweeps),
+        "swept": collision.swept(rows["joints"]),
         "r_reach": reach.reach(rng, rows["rooms"], rows["objects"]),
-        "reach": reach.openable_reach(rows["joints"]),
+        "reach": collision.openable_reach(rows["joints"]),
         "collision": collision.rates(rows["objects"], assets),
         "openable": control.openable(rng, rows["rooms"]),
         "walkable": control.walkable_means(rng, rows["rooms"]),
@@ -113,9 +111,9 @@ def category_table(trials: Trials, real: Iterable[Row], held_out: Iterable[Row],
     known = set(names)
     truth, learnt = ([row for row in rows if row["category"] in known] for rows in (held_out, real))
     return {
-        "train_against_test": category.ckl(truth, learnt, names),
-        "plain": category.ckl(truth, trials[ALL_PLAIN].drafted["objects"], names),
-        "guided": category.ckl(truth, trials[ALL_GUIDED].drafted["objects"], names),
+        "train_against_test": ckl(truth, learnt, names),
+        "plain": ckl(truth, trials[ALL_PLAIN].drafted["objects"], names),
+        "guided": ckl(truth, trials[ALL_GUIDED].drafted["objects"], names),
     }
 
 

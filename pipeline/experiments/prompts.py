@@ -1,33 +1,127 @@
-"""Prompts of a file, planned with several seeds: scores where there is ground truth, failures and seconds everywhere."""
+"""Prompts of a file, planned with several seeds: scores where there is ground truth, failures and seconds everywhere.
+
+A file is text with a prompt a line, or YAML, JSON or JSON lines with ground truth; it is checked before anything is planned.
+"""
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections import Counter
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from pipeline.errors import RefusedError, SfgenError
+from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan import FloorProgram, request, solve
+from pipeline.metrics.plan_checks import CHECKS, MEASURES, NEEDS
 from pipeline.metrics.plan_scores import score, score_checks
+from pipeline.shards import read_entries, require_prompt
 
 Json = dict[str, Any]
+REMEDY = "write a list of {prompt, graph, checks} as manifests/prompts/benchmark.yaml has them; graph and checks may be left out"
 CHECKED = ("presence", "adjacency", "constraints", "strict")  # what a case without a graph is scored on
 SCORES = ("node", "constraint", "edge", "presence", "adjacency", "constraints", "strict")
 NAMES = {"node": "S_node", "constraint": "S_constraint", "edge": "S_edge", "strict": "strict success"}  # in print, of those that differ
 
 
-def case_program(case: Mapping[str, Any]) -> FloorProgram:
-    """Return what the words of a case ask for."""
-    return request(case["prompt"])
+class _Loose(BaseModel):
+    model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False, coerce_numbers_to_str=True)
+
+
+class _Room(_Loose):
+    id: str
+    type: str
+    area: Annotated[float, Field(gt=0.0)] | None = None
+
+
+class _Edge(_Loose):
+    a: str
+    b: str
+    optional: bool = False
+
+
+class _Graph(_Loose):
+    rooms: Annotated[list[_Room], Field(min_length=1, max_length=200)]
+    edges: list[_Edge] = []
+    area_ratio: dict[str, Annotated[float, Field(ge=0.0)]] | None = None
+
+
+class _Adjacency(_Loose):
+    a: str
+    b: str
+
+
+class _Constraint(_Loose):
+    type: str
+
+
+class _Checks(_Loose):
+    presence: dict[str, Annotated[int, Field(ge=0)]] = {}
+    absent: list[str] = []
+    adjacency: list[_Adjacency] = []
+    constraints: list[_Constraint] = []
+
+
+class _Case(_Loose):
+    prompt: Annotated[str, Field(strict=True)]
+    id: str = ""
+    graph: _Graph | None = None
+    checks: _Checks = _Checks()
+
+
+def read_prompts(path: Path) -> list[Json]:
+    """Read a file of prompts as `shards.read_entries` does, each with its ground truth. Raises as that does, and ContentError naming the entry that is wrong."""
+    return [_case(entry, f"{name} of {path}", name) for name, entry in read_entries(path, REMEDY)]
+
+
+def _case(entry: object, where: str, name: str) -> Json:
+    """Check an entry, a prompt or a case, and return it as a case."""
+    try:
+        read = _Case.model_validate({"prompt": entry} if isinstance(entry, str) else entry)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise ContentError(f"{where}: {'.'.join(map(str, first['loc']))}: {first['msg']}", REMEDY) from error
+    if read.graph:
+        _graph(read.graph, where)
+    for check in read.checks.constraints:
+        _constraint(check.model_dump(), where)
+    plain = read.model_dump(exclude_none=True)
+    return {**plain, "id": read.id or name, "prompt": require_prompt(read.prompt, where)}
+
+
+def _graph(graph: _Graph, where: str) -> None:
+    count = Counter(r.id for r in graph.rooms)
+    if twice := [i for i, n in count.items() if n > 1]:
+        raise ContentError(f"{where}: two rooms of the graph are called {twice[0]!r}", "give each an id of its own")
+    if loose := [e for e in graph.edges if not {e.a, e.b} <= set(count)]:
+        raise ContentError(f"{where}: the edge {loose[0].a}-{loose[0].b} names a room that the graph lacks", REMEDY)
+    if not graph.area_ratio and (bare := [r.id for r in graph.rooms if r.area is None]):
+        raise ContentError(f"{where}: room {bare[0]!r} of the graph has no area", "give each room an area, or the graph an area_ratio")
+
+
+def _constraint(check: Json, where: str) -> None:
+    kind = check["type"]
+    if kind not in CHECKS:
+        raise ContentError(f"{where}: the constraint {kind!r} is unknown", f"known: {', '.join(CHECKS)}")
+    for name in NEEDS.get(kind, ()):
+        if check.get(name) is None:
+            raise ContentError(f"{where}: the constraint {kind!r} lacks {name!r}", REMEDY)
+    for name in check.keys() & MEASURES:
+        if isinstance(check[name], bool) or not isinstance(check[name], int | float):
+            raise ContentError(f"{where}: {name!r} of the constraint {kind!r} is no number", REMEDY)
+    for name, wanted in (("rooms", list), ("avoid", list), ("any_room", list), ("exclude", list), ("zones", dict)):
+        if name in check and not isinstance(check[name], wanted):
+            raise ContentError(f"{where}: {name!r} of the constraint {kind!r} is no {wanted.__name__}", REMEDY)
 
 
 def evaluate_prompts(
-    cases: Sequence[Mapping[str, Any]], seeds: int, program: Callable[[Mapping[str, Any]], FloorProgram] = case_program
+    cases: Sequence[Json], seeds: int, program: Callable[[Json], FloorProgram] = lambda case: request(case["prompt"])
 ) -> Json:
     """Return every run's scores and seconds, their means and the spread over seeds; a refused prompt scores 0 throughout.
 
-    `spread` is the standard deviation over seeds of what it stands beside; `seconds` is wall time from prompt to plan. `program` makes of a case
-    what is solved.
+    `spread` is the standard deviation over seeds of what it stands beside; `seconds` is wall time from prompt to plan. `program` makes of a
+    case what is solved: by default what its words ask for.
     """
     rows = []
     for case in cases:
@@ -38,18 +132,15 @@ def evaluate_prompts(
     return {"seeds": seeds, "prompts": rows, "failures": failed, "plans": seeds * len(rows), **_summary(by_seed)}
 
 
-def _run(case: Mapping[str, Any], seed: int, program: Callable[[Mapping[str, Any]], FloorProgram]) -> Json:
+def _run(case: Json, seed: int, program: Callable[[Json], FloorProgram]) -> Json:
     start, spent = time.perf_counter(), time.process_time()
-    refused = None
-    plan = None
+    plan, refused = None, None
     try:
         plan = solve(program(case), seed)
-    except SfgenError as error:
-        if not isinstance(error, RefusedError):
-            raise
+    except RefusedError as error:
         refused = str(error)
-    run: Json = {"seed": seed, "seconds": round(time.perf_counter() - start, 4), "cpu_seconds": round(time.process_time() - spent, 4)}
-    run["refused"] = refused
+    seconds, cpu_seconds = round(time.perf_counter() - start, 4), round(time.process_time() - spent, 4)
+    run: Json = {"seed": seed, "seconds": seconds, "cpu_seconds": cpu_seconds, "refused": refused}
     names = score_names(case)
     if plan is None:
         return run | dict.fromkeys(names, 0.0)
@@ -61,24 +152,24 @@ def _run(case: Mapping[str, Any], seed: int, program: Callable[[Mapping[str, Any
     return run
 
 
-def score_names(case: Mapping[str, Any]) -> tuple[str, ...]:
+def score_names(case: Json) -> tuple[str, ...]:
     """Return the scores that a case has ground truth for."""
     return SCORES if "graph" in case else CHECKED if any(case.get("checks", {}).values()) else ()
 
 
-def _summary(runs: Sequence[Mapping[str, Any]]) -> Json:
+def _summary(runs: Sequence[Json]) -> Json:
     mean = _means(runs)
     spread = {k: round(float(np.std([r[k] for r in runs])), 4) for k in mean}
     return {"mean": {k: round(v, 4) for k, v in mean.items()}, "spread": spread}
 
 
-def _means(runs: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+def _means(runs: Sequence[Json]) -> dict[str, float]:
     """Return the mean of each figure over the runs that have it."""
     listed = {k: [r[k] for r in runs if k in r] for k in (*SCORES, "seconds", "cpu_seconds")}
     return {k: float(np.mean(values)) for k, values in listed.items() if values}
 
 
-def report(figures: Mapping[str, Any]) -> str:
+def report(figures: Json) -> str:
     """Return the figures as a table: a line per prompt, then the mean over all with its spread over seeds."""
     any_scored = any(row["scored"] for row in figures["prompts"])
     names = [*SCORES, "seconds"] if any_scored else ["seconds"]

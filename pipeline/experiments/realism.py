@@ -9,15 +9,14 @@ import numpy as np
 
 from pipeline import seeds, tables, taxonomy
 from pipeline.experiments.dataset import shipped_rows
-from pipeline.experiments.rooms import FIRST
+from pipeline.experiments.trials import FIRST
 from pipeline.features import inception, net
 from pipeline.homes.rows import Row
 from pipeline.metrics.layout_features import features
 from pipeline.metrics.novelty import novelty
-from pipeline.metrics.perturbations import HARMS, Harm, spoilt
 from pipeline.metrics.relations import compare, furniture
 from pipeline.metrics.two_samples import forest_accuracy, frechet
-from pipeline.metrics.views import STATES, Embed, Features, compare_views, features_once
+from pipeline.metrics.views import HARMS, STATES, Embed, Features, Harm, compare_views, features_once, spoilt
 from pipeline.relations.arrangement import Arrangement, from_rows, rooms_of
 from pipeline.relations.model import Relations
 from schemas import OBJECTS, OPENINGS, ROOMS

@@ -1,6 +1,10 @@
-"""The numbers of the experiments that stand in params.yaml."""
+"""The numbers of the experiments that stand in params.yaml, and which rooms a number of them means."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,3 +22,9 @@ class MetricsSettings:
     gallery_width: int = 800  # px
     inception: str = ""  # TorchScript file of Inception-v3, for FID, KID and SCA with its features beside our own net's; "": none
     baselines: bool = False  # train and compare the layout models of the peers as well (stage `baselines`)
+
+
+def spread(items: Sequence[T], count: int) -> list[T]:
+    """Return `count` of the items, evenly spread over the list."""
+    taken = min(count, len(items))
+    return [items[i * len(items) // taken] for i in range(taken)]

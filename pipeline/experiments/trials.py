@@ -1,19 +1,21 @@
-"""Conditions of an experiment: rooms drafted, judged as they come, finished and judged again; as table rows."""
+"""Conditions of an experiment: rooms of the test split drafted, judged as they come, finished and judged again; as table rows."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from pipeline.diffusion.settings import Articulation
-from pipeline.entities.home import Placement
-from pipeline.experiments.rooms import room_home
+from pipeline.entities.home import Home, Placement
+from pipeline.errors import ContentError
 from pipeline.homes.factory import Factory
 from pipeline.homes.furnish import Draft, draft_rooms
 from pipeline.homes.life import RoomTries
 from pipeline.homes.request import RoomJob
 from pipeline.homes.room_finishing import RoomResult, finish
-from pipeline.homes.rows import Row, object_row, room_row
+from pipeline.homes.rows import Row, object_row, plan_of, room_row
 from pipeline.homes.violations import violations
 from pipeline.verify import verify_home
+
+FIRST = 10_000_000  # home index of the first room: keys that no dataset of homes will ever use
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,3 +118,30 @@ def _rows(factory: Factory, rooms: Sequence[tuple[Draft, Sequence[Placement]]]) 
         rows["objects"] += [object_row(home.scene_id, p, openable=o) for p, o in zip(placements, openable, strict=True)]
         rows["joints"] += certificate.joint_rows()
     return rows
+
+
+def test_rooms(tables: Mapping[str, Sequence[Row]], split: str, layout_types: Sequence[str]) -> list[RoomJob]:
+    """Return one job per room of the split, each with a plan of that room alone, in the order of the tables.
+
+    Raises ContentError when the split holds no room of these types.
+    """
+    scenes = {row["scene_id"]: row for row in tables["scenes"] if row["split"] == split}
+    openings: dict[str, list[Row]] = {}
+    for row in tables["openings"]:
+        openings.setdefault(row["scene_id"], []).append(row)
+    jobs = []
+    for number, room in enumerate(tables["rooms"]):
+        scene = scenes.get(room["scene_id"])
+        if scene is None or room["layout_type"] not in layout_types:
+            continue
+        own = [o for o in openings.get(room["scene_id"], []) if room["room_id"] in o["rooms"]]
+        plan = plan_of({**scene, "entrance": room["room_id"]}, [{**room, "level": 0}], [{**o, "level": 0} for o in own])
+        jobs.append(RoomJob(plan, room["room_id"], room["layout_type"], FIRST + number, 0))
+    if not jobs:
+        raise ContentError(f"the split {split!r} holds no furnished room", "raise corpus.houses in params.yaml")
+    return jobs
+
+
+def room_home(job: RoomJob, placements: Sequence[Placement]) -> Home:
+    """Return the home that consists of this one room."""
+    return Home(f"room_{job.index}", 0, job.index, "", "", job.plan, tuple(placements))

@@ -2,17 +2,19 @@
 
 It was trained to tell what kind of room a plan view shows, how many things of each kind stand how far from walls and from
 each other (the layout features of `pipeline.metrics`), and how its furniture was disturbed (moved, turned, swapped): its
-features look at arrangement, which nets of photographs do not.
+features look at arrangement, which nets of photographs do not. Training: two cross-entropies and a regression, on turned and mirrored views.
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
+from torch.nn.functional import cross_entropy, mse_loss
 
 from pipeline.errors import ContentError
 from pipeline.manifest import digest
@@ -20,7 +22,10 @@ from pipeline.tensors import load_state, load_tensors, save_tensors
 
 FEATURES = 32
 CHANNELS = (24, 48, 96, 128)
-BATCH = 256
+BATCH = 256  # views that are embedded at once
+TRAIN_BATCH = 128
+RATE = 3e-3
+EVERY = 500  # training steps that are reported together
 REMEDY = "make them with `python -m stages.features`"
 
 
@@ -67,6 +72,56 @@ def embed(net: ViewNet, views: NDArray[np.uint8]) -> NDArray[np.float64]:
     with torch.inference_mode():
         parts = [(net.features(torch.from_numpy(views[k : k + BATCH])) - net.centre) / net.spread for k in range(0, len(views), BATCH)]
     return np.asarray(torch.cat(parts).double().numpy()) if parts else np.zeros((0, FEATURES))
+
+
+class Progress(NamedTuple):
+    """Steps done; over the last of them the mean loss, and the shares of rooms and states that were told right."""
+
+    done: int
+    loss: float
+    rooms: float
+    states: float
+
+
+class Examples(NamedTuple):
+    """Plan views (N, 64, 64, 3) in 8 bits, their kinds of room and states (N,), their layout features (N, L)."""
+
+    views: NDArray[np.uint8]
+    rooms: NDArray[np.intp]
+    states: NDArray[np.intp]
+    layout: NDArray[np.float64]
+
+
+def train(rng: np.random.Generator, net: ViewNet, examples: Examples, steps: int, device: torch.device) -> Iterator[Progress]:
+    """Train on `device`, yielding every EVERY steps and at the end. Half of a batch are intact rooms (state 0), half harmed ones."""
+    optimiser = torch.optim.AdamW(net.to(device).parameters(), RATE, weight_decay=1e-2)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, max(2, steps))
+    scaled = (examples.layout - examples.layout.mean(0)) / np.maximum(examples.layout.std(0), 1e-3)
+    views, kinds, states = (torch.from_numpy(part).to(device) for part in examples[:3])
+    layout = torch.from_numpy(scaled).float().to(device)
+    halves = [np.flatnonzero(examples.states == 0), np.flatnonzero(examples.states > 0)]
+    net.train()
+    total, since = torch.zeros(3, device=device), 0
+    for step in range(steps):
+        drawn = np.concatenate([half[rng.integers(len(half), size=TRAIN_BATCH // 2)] for half in halves])
+        batch = torch.from_numpy(drawn).to(device)
+        room, state, features = net(_augment(rng, views[batch]))
+        loss = cross_entropy(room, kinds[batch]) + 2 * cross_entropy(state, states[batch]) + 3 * mse_loss(features, layout[batch])
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+        schedule.step()
+        right = [(logits.argmax(1) == truth[batch]).float().mean() for logits, truth in ((room, kinds), (state, states))]
+        total, since = total + torch.stack([loss.detach(), *right]), since + 1
+        if (step + 1) % EVERY == 0 or step + 1 == steps:
+            yield Progress(step + 1, *(round(v, 4) for v in (total / since).tolist()))
+            total, since = torch.zeros(3, device=device), 0
+
+
+def _augment(rng: np.random.Generator, views: Tensor) -> Tensor:
+    """Turn a batch by some quarters and mirror it, or not: a room stays a room."""
+    turned = torch.rot90(views, int(rng.integers(4)), (1, 2))
+    return turned.flip(2) if rng.integers(2) else turned
 
 
 def standardise(net: ViewNet, views: NDArray[np.uint8]) -> None:

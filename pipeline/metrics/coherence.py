@@ -27,25 +27,23 @@ def coherence(
     for (scene_id, _), rows in rooms.items():
         homes.setdefault(scene_id, []).extend(rows)
     figures: dict[str, list[float]] = {"things": [len(rows) for rows in homes.values()]}
-    styled = [[styles[row["asset_id"]] for row in rows if _is_furniture(row) and row["asset_id"] in styles] for rows in homes.values()]
+    known = cards().values()
+    furniture = {card.name for card in known if card.layout}
+    styled = [
+        [styles[row["asset_id"]] for row in rows if row["category"] in furniture and row["asset_id"] in styles] for rows in homes.values()
+    ]
     figures["style"] = [Counter(own).most_common(1)[0][1] / len(own) for own in styled if len(own) > 1]
-    for category in (card.name for card in cards().values() if card.set):
+    for category in (card.name for card in known if card.set):
         models = [[row["asset_id"] for row in rows if row["category"] == category] for rows in rooms.values()]
         figures[f"one model of {category}"] = [float(len(set(own)) == 1) for own in models if len(own) > 1]
-    for group in sorted({card.finish for card in cards().values()} - {""}):
+    for group in sorted({card.finish for card in known} - {""}):
+        members = {card.name for card in known if card.finish == group}
         colours = [
-            [finishes[row["asset_id"]] for row in rows if _is_of(row, group) and row["asset_id"] in finishes] for rows in rooms.values()
+            [finishes[row["asset_id"]] for row in rows if row["category"] in members and row["asset_id"] in finishes]
+            for rows in rooms.values()
         ]
         figures[f"finish of {group}"] = [_alike(own) for own in colours if len(own) > 1]
     return {name: bootstrap(rng, values) for name, values in figures.items() if values}
-
-
-def _is_furniture(row: Row) -> bool:
-    return row["category"] in cards() and cards()[row["category"]].layout
-
-
-def _is_of(row: Row, group: str) -> bool:
-    return row["category"] in cards() and cards()[row["category"]].finish == group
 
 
 def _alike(colours: Sequence[NDArray[np.float64]]) -> float:

@@ -6,6 +6,8 @@ from typing import TypedDict
 
 import numpy as np
 
+from pipeline.arrays import Floats
+
 Z95 = 1.959963984540054  # two-sided 95 % quantile of the normal distribution
 
 
@@ -50,6 +52,10 @@ def bootstrap(rng: np.random.Generator, values: Sequence[float], resamples: int 
     data = np.asarray(values, float)
     if not len(data):
         return {"mean": 0.0, "low": 0.0, "high": 0.0, "n": 0}
-    drawn = data[rng.integers(0, len(data), (resamples, len(data)))].mean(1)
+    return interval(float(data.mean()), data[rng.integers(0, len(data), (resamples, len(data)))].mean(1), len(data))
+
+
+def interval(mean: float, drawn: Sequence[float] | Floats, n: int) -> Mean:
+    """Return a mean of `n` with the interval that holds 95 % of what was drawn."""
     low, high = np.quantile(drawn, [0.025, 0.975])
-    return {"mean": round(float(data.mean()), 6), "low": round(float(low), 6), "high": round(float(high), 6), "n": len(data)}
+    return {"mean": round(mean, 6), "low": round(float(low), 6), "high": round(float(high), 6), "n": n}

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from pipeline.metrics.plan_graph import PASSAGES
-from pipeline.metrics.plan_scene import OUTDOOR, Scene, extent
+from pipeline.metrics.plan_graph import OUTDOOR, PASSAGES, Scene, extent
 
 TOLERANCE = 0.1  # of numeric checks that state none
 

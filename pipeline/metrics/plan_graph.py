@@ -1,12 +1,18 @@
-"""The graph of a floor plan, read off its realised openings, and its matching with a ground-truth graph."""
+"""A floor plan as a test case sees it: its graph, read off its realised openings, matched with the truth; what its rooms touch and reach."""
 
 from collections.abc import Mapping
 from typing import Any
 
-from pipeline.entities.plan import Plan, Room
+import numpy as np
+import shapely
+
+from pipeline.entities.plan import Plan, Room, hops
 
 PASSAGES = ("door", "open", "portal")
 BUDGET = 200_000  # partial matchings that are looked at before the best so far is kept
+OUTDOOR = frozenset({"balcony", "garage"})
+TOUCH = 0.26  # rooms this near [m] along a wall share it: an inner wall, or one that is partly an outer one
+RUN = 0.4  # of at least this length [m]
 
 Edge = frozenset[str]
 
@@ -91,3 +97,62 @@ class _Search:
             if len(rooms) == len(wanted) and None not in wanted:
                 total += sum(abs(a - b) for a, b in zip(sorted(rooms), sorted(wanted), strict=True))
         return total
+
+
+class Scene:
+    """A plan with the names that a case uses for its rooms; answers the checks."""
+
+    def __init__(self, plan: Plan, names: Mapping[str, str]) -> None:
+        self.plan, self.names = plan, names
+        self.edges = edges_of(plan)
+        self.shapes = {r.room_id: shapely.Polygon(r.polygon) for r in plan.rooms}
+        points = np.vstack([r.polygon for r in plan.rooms])
+        self.diagonal = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
+
+    def select(self, selector: object) -> list[Room]:
+        """Return the rooms that a selector means: the matched room of that id, else all of the type. Ids may be numbers in a file."""
+        selector = str(selector)
+        if selector in self.names:
+            return [self.plan.room(self.names[selector])]
+        if selector == "all_interior":
+            return [r for r in self.plan.rooms if r.type not in OUTDOOR]
+        return [r for r in self.plan.rooms if r.type == selector]
+
+    def touch(self, a: Room, b: Room) -> bool:
+        """Whether two rooms share a wall."""
+        if a.level != b.level and "staircase" not in {a.type, b.type}:
+            return False
+        one, two = self.shapes[a.room_id], self.shapes[b.room_id]
+        strip = one.buffer(TOUCH, join_style="mitre").intersection(two)
+        return not strip.is_empty and strip.area > 0.02 * RUN and max(extent(strip)) > RUN
+
+    def joins(self, a: Room, b: Room, via: str) -> bool:
+        """Whether an adjacency of the kind `via` holds between two rooms."""
+        kinds = self.edges.get(frozenset((a.room_id, b.room_id)), set())
+        if via == "wall":
+            return bool(kinds) or self.touch(a, b)
+        if via == "open":
+            return bool(kinds & {"open", "portal"})
+        return bool(kinds)
+
+    def reachable(self, target: Room, avoid: set[str]) -> bool:
+        """Whether one can walk from the entrance to a room without entering any of `avoid`."""
+        ways = (edge for edge in self.edges if not edge & avoid)
+        return target.room_id not in avoid and target.room_id in hops(ways, self.plan.entrance)
+
+    def hops(self, a: Room, b: Room) -> int:
+        """Count the openings on the shortest way between two rooms."""
+        return hops(self.edges, a.room_id).get(b.room_id, 99)
+
+    def outside(self, room: Room) -> float:
+        """Length of the room's walls that face the outside [m]."""
+        beside = (r for r in self.plan.rooms if r.room_id != room.room_id and (r.level == room.level or r.type == "staircase"))
+        rest = [self.shapes[r.room_id].buffer(TOUCH + 0.05, join_style="mitre") for r in beside]
+        border = self.shapes[room.room_id].exterior
+        return float(border.difference(shapely.union_all(rest)).length) if rest else float(border.length)
+
+
+def extent(shape: shapely.Geometry) -> tuple[float, float]:
+    """Return width and height of the shape's bounds [m]."""
+    x0, y0, x1, y1 = shape.bounds
+    return x1 - x0, y1 - y0

@@ -13,17 +13,16 @@ its weighted benchmark score) leaves rules open, these hold:
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from pipeline.entities.plan import Plan, Room
+from pipeline.entities.plan import Plan
 from pipeline.metrics.plan_checks import constraint
-from pipeline.metrics.plan_graph import edges_of, match
-from pipeline.metrics.plan_scene import Scene
+from pipeline.metrics.plan_graph import Scene, edges_of, match
 
 CIRCULATION = frozenset({"hallway", "entry"})
 WEIGHTS = (0.5, 0.3, 0.2)  # presence, adjacency, constraints: the paper's benchmark score
@@ -55,11 +54,9 @@ def score(plan: Plan, case: Mapping[str, Any]) -> PlanScores:
     matching = match(plan, graph)
     node, strict_node = _node(plan, graph, matching)
     edge, strict_edge = _edge(plan, graph, matching)
-    truth: dict[str, float] = {}
-    for row in graph["rooms"]:
-        truth[row["type"]] = truth.get(row["type"], 0.0) + (row.get("area") or 0.0)
     presence, adjacency, constraints, success = score_checks(plan, case, {n: i for i, n in matching.items()})
-    share = s_constraint(areas_by_type(plan.rooms), graph.get("area_ratio") or truth)
+    truth = graph.get("area_ratio") or areas_by_type((row["type"], row.get("area") or 0.0) for row in graph["rooms"])
+    share = s_constraint(areas_by_type((room.type, room.area) for room in plan.rooms), truth)
     return PlanScores(node, share, edge, strict_node, strict_edge, presence, adjacency, constraints, success)
 
 
@@ -84,11 +81,11 @@ def s_constraint(areas: Mapping[str, float], truth: Mapping[str, float]) -> floa
     return 1.0 - 0.5 * sum(abs(areas.get(k, 0.0) / a - truth.get(k, 0.0) / b) for k in keys)
 
 
-def areas_by_type(rooms: Sequence[Room]) -> dict[str, float]:
-    """Sum the areas of rooms per type [m2]."""
+def areas_by_type(rooms: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """Sum the areas of rooms (type, area [m2]) per type."""
     total: dict[str, float] = {}
-    for room in rooms:
-        total[room.type] = total.get(room.type, 0.0) + room.area
+    for kind, area in rooms:
+        total[kind] = total.get(kind, 0.0) + area
     return total
 
 
@@ -123,16 +120,19 @@ def _ratio(edges: Sequence[frozenset[str]], asked: Sequence[frozenset[str]]) -> 
 
 
 def _adjacent(scene: Scene, graph: Mapping[str, Any], check: Mapping[str, Any]) -> list[float]:
-    """Return what an adjacency check gives: a value for each room that is to have the neighbour, 0 for one that is missing.
+    """Return what an adjacency check gives: one value (some), or one for each room of `a` that is to have the neighbour, 0 for one that is missing.
 
-    Rooms beyond those of the truth count for nothing here.
+    Rooms that the truth has no partner for count for nothing, where others are there.
     """
+    ones, others = scene.select(check["a"]), scene.select(check["b"])
+    some, partners = check.get("quant") == "some", set(scene.names.values())
+    asked = ones if some else [r for r in ones if r.room_id in partners] or ones
+    met = [any(scene.joins(a, b, check.get("via", "any")) for b in others if b.room_id != a.room_id) for a in asked]
+    if some:
+        return [float(any(met))]
     named = any(check["a"] == r["id"] for r in graph["rooms"])  # an id goes before a type of that name
     wanted = 1 if named else sum(check["a"] == r["type"] for r in graph["rooms"])
-    parts = scene.adjacency(check)
-    if check.get("quant") == "some":
-        return parts
-    return parts + [0.0] * (wanted - len(parts))
+    return [float(v) for v in met] + [0.0] * (max(wanted, 1) - len(met))
 
 
 def _presence(plan: Plan, checks: Mapping[str, Any]) -> float:

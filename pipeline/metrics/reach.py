@@ -1,4 +1,4 @@
-"""Reach: R_reach as the peers code it, and the share of openable objects that a robot can really stand at and open."""
+"""Reach: R_reach as the peers code it."""
 
 from collections.abc import Iterable, Sequence
 
@@ -8,8 +8,7 @@ from scipy import ndimage
 
 from pipeline.geometry.boxes import footprints
 from pipeline.geometry.floor_raster import Raster
-from pipeline.geometry.kinematics import OPENERS
-from pipeline.metrics.intervals import Mean, Rate, bootstrap, rate
+from pipeline.metrics.intervals import Mean, bootstrap
 from pipeline.metrics.rows import Row, boxes, by_room
 
 PIXELS = 256  # side of the raster
@@ -56,17 +55,3 @@ def reach(rng: np.random.Generator, rooms: Iterable[Row], objects: Iterable[Row]
     """Return the mean R_reach over rooms with objects, on the ground, as the peers code it."""
     polygons = {(room["scene_id"], room["room_id"]): np.array(room["polygon"], float) for room in rooms}
     return bootstrap(rng, [room_reach(polygons[name], own) for name, own in by_room(objects).items() if name in polygons])
-
-
-def openable_reach(joints: Iterable[Row]) -> dict[str, Rate]:
-    """Return the share of openable objects with a part that opens wholly with a robot at its handle, and of such joints."""
-    listed = [j for j in joints if j["part_class"] in OPENERS]
-    good: dict[tuple[str, str], bool] = {}
-    for j in listed:
-        key = (j["scene_id"], j["object_id"])
-        good[key] = good.get(key, False) or _works(j)
-    return {"objects": rate(sum(good.values()), len(good)), "joints": rate(sum(_works(j) for j in listed), len(listed))}
-
-
-def _works(joint: Row) -> bool:
-    return bool(joint["clear"]) and joint["stand"] is not None

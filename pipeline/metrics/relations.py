@@ -14,8 +14,7 @@ from pipeline import taxonomy
 from pipeline.metrics.intervals import Rate, bootstrap, rate
 from pipeline.metrics.rules import CHAIRS, RULES, TABLES, Rule, backs, frames_of, of
 from pipeline.relations.arrangement import Arrangement, make_arrangement
-from pipeline.relations.model import PairRelation, Relations
-from pipeline.relations.modes import in_any_mode
+from pipeline.relations.model import PairRelation, Relations, in_any_mode
 
 Json = dict[str, Any]
 Sets = Mapping[str, Sequence[Arrangement]]
@@ -34,15 +33,24 @@ def furniture(room: Arrangement) -> Arrangement:
 
 
 def compare(rng: np.random.Generator, sets: Sets, known: Relations) -> Json:
-    """Return every rate and count for each set of rooms, by name of the figure, then of the set; the first set is the real one."""
+    """Return every rate and count for each set of rooms, by name of the figure, then of the set; the first set is the real one.
+
+    A category wants a wall at its back where most of its training things have one.
+    """
     sets = {key: [furniture(room) for room in rooms] for key, rooms in sets.items()}
-    rules = {**RULES, "back at the wall": backs(wanting(known))}
+    at_walls = [wall for sides in known.walls.values() for wall in sides if wall.side == "back" and wall.gap.high < 0.2]
+    rules = {**RULES, "back at the wall": backs(frozenset(wall.category for wall in at_walls if wall.share >= WANTS_A_WALL))}
     learnt = {f"{pair.member} at {pair.anchor}": holding(pair) for pair in notable(known)}
+    types = ["all", *sorted({room.layout_type for room in next(iter(sets.values()))})]
+    counts = {
+        kind: {key: [len(r.categories) for r in rooms if kind in {"all", r.layout_type}] for key, rooms in sets.items()} for kind in types
+    }
+    chairs = {key: [len(of(room, CHAIRS)) for room in rooms if len(of(room, TABLES))] for key, rooms in sets.items()}
     return {
         "rates": {name: {key: rule_rate(rooms, rule) for key, rooms in sets.items()} for name, rule in sorted(rules.items())},
         "learnt": {name: {key: rule_rate(rooms, rule) for key, rooms in sets.items()} for name, rule in learnt.items()},
-        "objects": {kind: {key: objects(rng, rooms, kind) for key, rooms in sets.items()} for kind in types(sets)},
-        "chairs": {key: chairs(rng, rooms) for key, rooms in sets.items()},
+        "objects": {kind: {key: bootstrap(rng, own) for key, own in by_set.items()} for kind, by_set in counts.items()},
+        "chairs": {key: bootstrap(rng, own) for key, own in chairs.items()},
     }
 
 
@@ -52,24 +60,15 @@ def rule_rate(rooms: Sequence[Arrangement], rule: Rule) -> Rate:
     return rate(sum(verdicts), len(verdicts))
 
 
-def wanting(known: Relations) -> frozenset[str]:
-    """Return the categories that want a wall at their backs: most of them had one, in the training rooms."""
-    return frozenset(
-        name
-        for name, walls in known.walls.items()
-        for wall in walls
-        if wall.side == "back" and wall.share >= WANTS_A_WALL and wall.gap.high < 0.2
-    )
-
-
 def notable(known: Relations) -> list[PairRelation]:
     """Return the strongest relations among what the layout model learns, one for each pair of categories and three for each member."""
     names = set(taxonomy.load().names)
     by_pair: dict[frozenset[str], PairRelation] = {}
     taken: Counter[str] = Counter()
-    for pair in known.strongest(STRONG):
-        if {pair.anchor, pair.member} <= names and frozenset((pair.anchor, pair.member)) not in by_pair and taken[pair.member] < 3:
-            by_pair[frozenset((pair.anchor, pair.member))] = pair
+    for pair in sorted(known.pairs.values(), key=lambda p: (-p.strength, p.anchor, p.member)):
+        both = frozenset((pair.anchor, pair.member))
+        if pair.strength >= STRONG and both <= names and both not in by_pair and taken[pair.member] < 3:
+            by_pair[both] = pair
             taken[pair.member] += 1
     return list(by_pair.values())[:MOST]
 
@@ -86,18 +85,3 @@ def holding(pair: PairRelation) -> Rule:
                 yield bool(in_any_mode(pair.modes, frames[np.array([frames.distance().argmin()])])[0])
 
     return rule
-
-
-def types(sets: Sets) -> list[str]:
-    """Return the room types that the first set, the real rooms, has; "all" stands for every one."""
-    return ["all", *sorted({room.layout_type for room in next(iter(sets.values()))})]
-
-
-def objects(rng: np.random.Generator, rooms: Sequence[Arrangement], kind: str) -> Json:
-    """Return the mean number of objects in rooms of a type."""
-    return dict(bootstrap(rng, [len(room.categories) for room in rooms if kind in {"all", room.layout_type}]))
-
-
-def chairs(rng: np.random.Generator, rooms: Sequence[Arrangement]) -> Json:
-    """Return the mean number of chairs in rooms that have a dining table."""
-    return dict(bootstrap(rng, [len(of(room, CHAIRS)) for room in rooms if len(of(room, TABLES))]))

@@ -10,12 +10,13 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.arrays import Floats
+from pipeline.arrays import Bools
 from pipeline.relations.arrangement import Arrangement
 from pipeline.relations.frames import Boxes, Frames, relate, wrap_angle
 from pipeline.relations.walls import AROUND, measure
 
 Rule = Callable[[Arrangement], Iterator[bool]]
+Indices = NDArray[np.intp]
 
 TABLES = ("dining_table",)
 CHAIRS = ("dining_chair", "chinese_chair")
@@ -45,18 +46,18 @@ SIGHT = np.radians(35.0)  # to a screen's middle, from a seat's front
 SAME = np.radians(10.0)
 
 
-def of(room: Arrangement, names: tuple[str, ...]) -> NDArray[np.intp]:
+def of(room: Arrangement, names: tuple[str, ...]) -> Indices:
     """Return the indices of a room's things of these categories."""
     return np.flatnonzero(np.isin(np.array(room.categories, object), names)) if room.categories else np.zeros(0, np.intp)
 
 
-def frames_of(room: Arrangement, anchors: NDArray[np.intp], members: NDArray[np.intp]) -> Frames:
+def frames_of(room: Arrangement, anchors: Indices, members: Indices) -> Frames:
     """Relate each member to every anchor (M * A,), a member's anchors in a row."""
     boxes = Boxes(room.position, room.yaw, room.size)
     return relate(boxes[np.tile(anchors, len(members))], boxes[np.repeat(members, len(anchors))])
 
 
-def hits(frames: Frames, slack: float = 0.1) -> NDArray[np.bool_]:
+def hits(frames: Frames, slack: float = 0.1) -> Bools:
     """Tell whose look straight ahead, from the middle, meets the anchor's box grown by `slack` [m]."""
     look = np.stack([np.sin(frames.turn), -np.cos(frames.turn)], -1)
     look = np.where(np.abs(look) < 1e-9, 1e-9, look)
@@ -65,14 +66,7 @@ def hits(frames: Frames, slack: float = 0.1) -> NDArray[np.bool_]:
     return np.asarray((ends[0].max(1) <= ends[1].min(1)) & (ends[1].min(1) > 0))
 
 
-def apart(frames: Frames) -> Floats:
-    """Return the distance between the boxes [m]."""
-    return np.asarray(np.linalg.norm(np.maximum(frames.gaps(), 0), axis=1))
-
-
-def any_of(
-    room: Arrangement, anchors: tuple[str, ...], members: tuple[str, ...], holds: Callable[[Frames], NDArray[np.bool_]]
-) -> Iterator[bool]:
+def any_of(room: Arrangement, anchors: tuple[str, ...], members: tuple[str, ...], holds: Callable[[Frames], Bools]) -> Iterator[bool]:
     """Yield for each member whether it holds at one of the anchors; nothing in rooms without an anchor."""
     a, m = of(room, anchors), of(room, members)
     if len(a) and len(m):
@@ -82,7 +76,7 @@ def any_of(
 
 def chair_at_table(room: Arrangement) -> Iterator[bool]:
     """Chairs of rooms with a dining table: near one, and facing it."""
-    yield from any_of(room, TABLES, CHAIRS, lambda f: (apart(f) <= AT_TABLE) & hits(f))
+    yield from any_of(room, TABLES, CHAIRS, lambda f: (f.apart() <= AT_TABLE) & hits(f))
 
 
 def coffee_table_before_sofa(room: Arrangement) -> Iterator[bool]:
@@ -91,7 +85,7 @@ def coffee_table_before_sofa(room: Arrangement) -> Iterator[bool]:
         room,
         SOFAS,
         ("coffee_table",),
-        lambda f: (f.place[:, 1] < 0) & (np.abs(f.place[:, 0]) < f.anchor[:, 0] / 2) & (apart(f) <= BEFORE_SOFA),
+        lambda f: (f.place[:, 1] < 0) & (np.abs(f.place[:, 0]) < f.anchor[:, 0] / 2) & (f.apart() <= BEFORE_SOFA),
     )
 
 
@@ -108,7 +102,7 @@ def sofa_looks_at_screen(room: Arrangement) -> Iterator[bool]:
 def nightstand_at_bed(room: Arrangement) -> Iterator[bool]:
     """Nightstands of rooms with a bed: beside its head, same front."""
 
-    def holds(f: Frames) -> NDArray[np.bool_]:
+    def holds(f: Frames) -> Bools:
         head = np.abs(f.place[:, 1] + f.extent[:, 1] / 2 - f.anchor[:, 1] / 2) < 0.3
         return np.asarray((np.abs(f.turn) < SAME) & head & (np.abs(f.gaps()[:, 0]) <= AT_BED))
 
@@ -129,7 +123,7 @@ def unit_in_run(room: Arrangement) -> Iterator[bool]:
 def sink_and_cooker_apart(room: Arrangement) -> Iterator[bool]:
     """Kitchens with both: a unit or more between each sink and the cookers."""
     if room.layout_type == "kitchen":
-        yield from (not near for near in any_of(room, ("oven",), ("sink_cabinet",), lambda f: apart(f) < APART))
+        yield from (not near for near in any_of(room, ("oven",), ("sink_cabinet",), lambda f: f.apart() < APART))
 
 
 def wall_unit_over_base(room: Arrangement) -> Iterator[bool]:
@@ -200,7 +194,7 @@ def has_facing_member(anchors: tuple[str, ...], members: tuple[str, ...], reach:
                 yield False
                 continue
             frames = frames_of(room, np.array([k]), m)
-            yield bool(((apart(frames) <= reach) & hits(frames)).any())
+            yield bool(((frames.apart() <= reach) & hits(frames)).any())
 
     return rule
 

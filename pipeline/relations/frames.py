@@ -56,10 +56,13 @@ class Frames:
         """Return the gaps (P, 2) between the boxes along both axes; negative where they overlap there [m]."""
         return np.asarray(np.abs(self.place) - (self.anchor + self.extent) / 2)
 
+    def apart(self) -> Floats:
+        """Return how far apart the boxes are (P,) [m]."""
+        return np.asarray(np.linalg.norm(np.maximum(self.gaps(), 0), axis=1))
+
     def distance(self) -> Floats:
-        """Return how far apart the boxes are (P,) [m]; overlapping boxes differ a little, by their centres."""
-        apart = np.linalg.norm(np.maximum(self.gaps(), 0), axis=1)
-        return np.asarray(apart + 1e-3 * np.linalg.norm(self.place, axis=1))
+        """Return the same, but that overlapping boxes differ a little, by their centres."""
+        return np.asarray(self.apart() + 1e-3 * np.linalg.norm(self.place, axis=1))
 
     def sides(self) -> NDArray[np.intp]:
         """Return on which side of its anchor each member stands (P,): the side with the widest gap."""

@@ -2,31 +2,39 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 
 from pipeline import taxonomy
 from pipeline.arrays import Floats
-from pipeline.relations import walls
 from pipeline.relations.arrangement import Arrangement
-from pipeline.relations.clusters import entropy, split
 from pipeline.relations.frames import ALONG, NORMAL, OVER, SIDES, Boxes, Frames, offset_along, relate, wrap_angle
-from pipeline.relations.model import PairRelation, Relations, relations
-from pipeline.relations.modes import Mode, Span, in_any_mode
+from pipeline.relations.model import METRES, RADIANS, Mode, PairRelation, Relations, Span, WallRelation, in_any_mode, relations
+from pipeline.relations.walls import AROUND, measure
 
 Indices = NDArray[np.intp]
 
-LEAST_CASES = 30  # members that must share a room with an anchor
+LEAST_CASES = 30  # members that must share a room with an anchor; things of a category that must stand at walls
 MOST_CASES = 3000  # members that are looked at, spread over the rooms: more say no more
 LEAST_MODE = 0.03  # share of the members, and
 LEAST_IN_MODE = 8  # number of them that make a mode
 LEAST_STRENGTH = 0.3  # relations weaker than this are not kept
 ALIKE = ("bed", "chair", "sofa")  # super-categories whose members stand to other things as each other do; tables and cabinets do not
 WALK = (0.3, 0.8)  # a gap that nearly all things of two kinds keep says nothing when it is narrower, and no more when it is wider [m]
+LEAST_SHARE = 0.1  # of the things of a category that must stand at a wall alike
+FAR = 0.6  # a wall farther off than this is no neighbour [m]
 TAILS = (5.0, 50.0, 95.0)  # percentiles of a span
 DIGITS = 4  # of what is learnt
 STRAYS, STRAY = 3.0, 0.5  # who is farther off than most by so many times the quartiles' distance, and by no less than this, is a stray [m]
+
+
+WIDTH = 0.05  # narrowest kernel
+FINE = 5  # grid points to a kernel's width
+VALLEY = 0.6  # a valley is no deeper split than this share of the lower of its two peaks
+RANGE = 8.0  # values farther out than this are counted at the end of the grid
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +72,7 @@ def fit(rooms: Sequence[Arrangement], kinds: Mapping[str, str] | None = None) ->
                 learnt |= {(a, m): kind and _held_by(kind, things, *case, (a, m)) for a, m in own}
     names = things.names
     kept = [r._replace(anchor=names[a], member=names[m]) for (a, m), r in learnt.items() if r is not None and r.strength >= LEAST_STRENGTH]
-    return relations(kept, walls.fit(rooms, kinds), _distances(things, anchor, member))
+    return relations(kept, _wall_relations(rooms, kinds), _distances(things, anchor, member))
 
 
 def _distances(things: _Things, anchor: Indices, member: Indices) -> dict[tuple[str, str], float]:
@@ -76,8 +84,7 @@ def _distances(things: _Things, anchor: Indices, member: Indices) -> dict[tuple[
     for (a, m), case in _cases(anchor[there], member[there], things.kind, things.kind):
         if a != m:
             pair = things.names[min(a, m)], things.names[max(a, m)]
-            gap = np.maximum(_nearest(things, *case, (1, 1)).gaps(), 0.0)
-            kept = round(float(np.percentile(np.linalg.norm(gap, axis=1), TAILS[0])), 3)
+            kept = round(float(np.percentile(_nearest(things, *case, (1, 1)).apart(), TAILS[0])), 3)
             distances[pair] = min(kept, distances.get(pair, kept))
     return {pair: min(distance, WALK[1]) for pair, distance in distances.items() if distance >= WALK[0]}
 
@@ -128,7 +135,7 @@ def _relation(things: _Things, anchor: Indices, member: Indices) -> PairRelation
     if not modes:
         return None
     chances = [in_any_mode(modes, _nearest(things, anchor, member, mirror)).mean() for mirror in ((-1, 1), (1, -1), (-1, -1))]
-    share, chance = (round(float(np.mean(part)), DIGITS) for part in (in_any_mode(modes, own), chances))
+    share, chance = _rounded((in_any_mode(modes, own).mean(), np.mean(chances)))
     return PairRelation("", "", len(own.turn), share, chance, modes)
 
 
@@ -212,7 +219,7 @@ def _span(reference: str, values: Floats, unit: float) -> tuple[float, Span]:
     """Return how wide a span is [m], and the span; a reference of fewer parts wins where it is hardly wider."""
     low, middle, high = np.percentile(values[_close(values)] if reference == "outside" else values, TAILS)
     handicap = {"middle": 0.0, "outside": 0.0, "share": 0.02}.get(reference, 0.005)
-    return float((high - low) * unit + handicap), Span(reference, *(round(float(v), DIGITS) for v in (low, middle, high)))
+    return float((high - low) * unit + handicap), Span(reference, *_rounded((low, middle, high)))
 
 
 def _close(gaps: Floats) -> NDArray[np.bool_]:
@@ -225,4 +232,100 @@ def _turn(reference: str, values: Floats) -> Span:
     """Return the span of angles: percentiles around their mean direction."""
     mean = float(np.arctan2(np.sin(values).mean(), np.cos(values).mean()))
     low, middle, high = mean + np.percentile(wrap_angle(values - mean), TAILS)
-    return Span(reference, *(round(float(v), DIGITS) for v in (low, middle, high)))
+    return Span(reference, *_rounded((low, middle, high)))
+
+
+def _wall_relations(rooms: Sequence[Arrangement], kinds: Mapping[str, str]) -> Iterator[WallRelation]:
+    """Yield for each category the sides that stand at a wall more often than others do.
+
+    `kinds` names the kind of a category: one of which there are too few to tell stands to walls as all of its kind do together.
+    """
+    names = np.array([name for room in rooms for name in room.categories])
+    measures = [measure(room) for room in rooms if room.categories]
+    if not measures:
+        return
+    gaps, turns = np.concatenate([g for g, _ in measures]), np.concatenate([t for _, t in measures])
+    kind = np.array([kinds.get(name, "") for name in names.tolist()])
+    for name in sorted(set(names.tolist())):
+        own = names == name
+        if own.sum() < LEAST_CASES and name in kinds:
+            own = kind == kinds[name]
+        if own.sum() >= LEAST_CASES:
+            for side in range(4):
+                relation = _wall_relation(name, side, gaps[own], turns[own])
+                if relation is not None and relation.share >= LEAST_SHARE and relation.strength > 0:
+                    yield relation
+
+
+def _wall_relation(name: str, side: int, gaps: Floats, turns: Floats) -> WallRelation | None:
+    near = np.flatnonzero(gaps[:, side] < FAR)
+    if len(near) < LEAST_CASES / 3:
+        return None
+    parts = [near[part] for part in split(gaps[near, side], max(8, len(gaps) // 33))]
+    best = max(parts, key=len)
+    gap = Span("outside", *_rounded(np.percentile(gaps[best, side], TAILS)))
+    turn = Span("wall", *_rounded(np.percentile(turns[best, side], TAILS)))
+    holds = (gaps > gap.low - METRES) & (gaps < gap.high + METRES) & (turns > turn.low - RADIANS) & (turns < turn.high + RADIANS)
+    shares = holds.mean(0)
+    share, chance = _rounded((shares[side], np.delete(shares, side).mean()))
+    return WallRelation(name, AROUND[side], len(gaps), share, chance, gap, turn)
+
+
+def _density(values: Floats) -> tuple[Floats, Floats]:
+    """Return a kernel estimate over a regular grid: the grid (G,), and its density (G,)."""
+    spread = float(np.std(values))
+    width = max(WIDTH, 0.3 * spread * (len(values) / 100) ** -0.2)
+    step = width / FINE
+    low = max(-RANGE, float(values.min())) - 4 * width
+    high = min(RANGE, float(values.max())) + 4 * width
+    count = int(np.ceil((high - low) / step)) + 1
+    cells = np.bincount(np.clip(((values - low) / step).astype(int), 0, count - 1), minlength=count)
+    smooth = gaussian_filter1d(cells.astype(float), FINE, mode="constant")
+    return low + step * (np.arange(count) + 0.5), smooth / (len(values) * step)
+
+
+def entropy(values: Floats) -> float:
+    """Return minus the mean log density [nats]: the lower, the better the values keep together."""
+    grid, densities = _density(values)
+    return -float(np.mean(np.log(np.interp(values, grid, densities) + 1e-9)))
+
+
+def split(values: Floats, least: int) -> list[Indices]:
+    """Return the clusters, left to right, as indices; those of fewer than `least` values go with a neighbour."""
+    if len(values) < 2 * least:
+        return [np.arange(len(values))]
+    grid, densities = _density(values)
+    cuts = grid[_valleys(densities)]
+    order = np.digitize(values, cuts)
+    clusters = [np.flatnonzero(order == k) for k in range(len(cuts) + 1)]
+    while len(clusters) > 1 and min(map(len, clusters)) < least:
+        k = min(range(len(clusters)), key=lambda i: len(clusters[i]))
+        other = k - 1 if k and (k == len(clusters) - 1 or _apart(values, clusters, k - 1) < _apart(values, clusters, k)) else k + 1
+        first = min(k, other)
+        clusters[first : first + 2] = [np.concatenate(clusters[first : first + 2])]
+    return clusters
+
+
+def _apart(values: Floats, clusters: list[Indices], k: int) -> float:
+    left, right = values[clusters[k]], values[clusters[k + 1]]
+    return float(right.min() - left.max()) if len(left) and len(right) else 0.0
+
+
+def _valleys(densities: Floats) -> list[int]:
+    """Return the grid points at which to cut: the lowest between two peaks, where it is low enough."""
+    rise = np.flatnonzero((densities[1:-1] > densities[:-2]) & (densities[1:-1] >= densities[2:])) + 1
+    peaks = [int(p) for p in rise]
+    cuts: list[int] = []
+    while len(peaks) > 1:
+        lows = [a + int(np.argmin(densities[a:b])) for a, b in pairwise(peaks)]
+        worth = [densities[v] / min(densities[a], densities[b]) for v, a, b in zip(lows, peaks[:-1], peaks[1:], strict=True)]
+        k = int(np.argmax(worth))
+        if worth[k] <= VALLEY:
+            cuts = lows
+            break
+        del peaks[k if densities[peaks[k]] < densities[peaks[k + 1]] else k + 1]
+    return cuts
+
+
+def _rounded(values: Iterable[float]) -> Iterator[float]:
+    return (round(float(value), DIGITS) for value in values)

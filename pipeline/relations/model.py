@@ -1,4 +1,4 @@
-"""What is known of relations: pairs of categories, walls, distances; and as JSON: small, stable, readable."""
+"""What is known of relations: ways of standing at an anchor, pairs of categories, walls, distances; and as JSON: small, stable, readable."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -6,11 +6,62 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from pipeline.arrays import Bools, Floats
 from pipeline.errors import ContentError
 from pipeline.manifest import write_bytes
-from pipeline.relations.modes import Mode, Span
+from pipeline.relations.frames import ALONG, NORMAL, SIDES, Frames, offset_along, wrap_angle
 
 VERSION = 2
+METRES, RADIANS = 0.05, 0.09  # a member this near to a mode holds it [m], [rad]: 5 cm, 5 degrees
+
+
+class Span(NamedTuple):
+    """Where the cases lie: 5 %, 50 % and 95 % of them are below; measured from a reference, see `frames.offset_along`."""
+
+    reference: str
+    low: float
+    middle: float
+    high: float
+
+    def excess(self, value: Floats) -> Floats:
+        """Return how far values lie outside: negative below, positive above, 0 within."""
+        return np.asarray(np.minimum(value - self.low, 0) + np.maximum(value - self.high, 0))
+
+
+class Mode(NamedTuple):
+    """A side of the anchor, the share of members that stand so, their place outwards of it and along it, their turn.
+
+    `turn` is measured from the anchor's yaw (`anchor`), or from the yaw at which the member's front points at the anchor's centre (`facing`).
+    """
+
+    side: str
+    weight: float
+    outwards: Span
+    along: Span
+    turn: Span
+
+    def distances(self, frames: Frames) -> tuple[Floats, Floats]:
+        """Return how far members are off (P,) [m] and (P,) [rad]: 0 within the spans."""
+        k = SIDES.index(self.side)
+        off = []
+        for span, direction in ((self.outwards, NORMAL[k]), (self.along, ALONG[k])):
+            beyond = span.excess(offset_along(frames, direction, span.reference))
+            off.append(beyond * (frames.anchor @ np.abs(direction)) if span.reference == "share" else beyond)
+        turn = self.turn
+        angle = wrap_angle((frames.facing if turn.reference == "facing" else frames.turn) - turn.middle)
+        beyond = turn._replace(low=turn.low - turn.middle, high=turn.high - turn.middle).excess(angle)
+        return np.hypot(*off), np.abs(beyond)
+
+
+def in_any_mode(modes: tuple[Mode, ...], frames: Frames) -> Bools:
+    """Return which members are in a mode (P,)."""
+    inside = np.zeros(len(frames.turn), bool)
+    for mode in modes:
+        metres, radians = mode.distances(frames)
+        inside |= (metres <= METRES) & (radians <= RADIANS)
+    return inside
 
 
 class PairRelation(NamedTuple):
@@ -66,11 +117,6 @@ class Relations:
     def pair(self, anchor: str, member: str) -> PairRelation | None:
         """Return the relation of a member to an anchor, if it has one."""
         return self.pairs.get((anchor, member))
-
-    def strongest(self, least: float = 0.0) -> list[PairRelation]:
-        """Return the relations of at least this strength, strongest first."""
-        pairs = [pair for pair in self.pairs.values() if pair.strength >= least]
-        return sorted(pairs, key=lambda p: (-p.strength, p.anchor, p.member))
 
     def save(self, path: Path) -> None:
         """Write relations, a line for each pair, wall and distance."""

@@ -6,8 +6,7 @@ import numpy as np
 
 from pipeline.arrange import LearntRelations
 from pipeline.entities.home import Placement
-from pipeline.relations.model import PairRelation, WallRelation, relations
-from pipeline.relations.modes import Mode, Span
+from pipeline.relations.model import Mode, PairRelation, Span, WallRelation, relations
 
 
 def farthest(found, wished):

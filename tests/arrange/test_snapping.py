@@ -13,8 +13,7 @@ from pipeline.arrange.bonds import LEVER, at_anchor, broken, find_bond, nearest
 from pipeline.arrange.item import make_item
 from pipeline.entities.plan import Opening, Plan
 from pipeline.relations.frames import Boxes, relate
-from pipeline.relations.model import WallRelation, relations
-from pipeline.relations.modes import Mode, Span
+from pipeline.relations.model import Mode, Span, WallRelation, relations
 from pipeline.verify import verify_home
 from tests.arrange.known import LORE, RELATIONS, drafted, mode, pair, wall
 from tests.geometry.furniture import LIBRARY, block, chest, home, one_room

@@ -3,9 +3,7 @@ import math
 import pytest
 import torch
 
-from pipeline.baselines.rooms import furniture, outlines
-from pipeline.baselines.scaling import Scaling
-from pipeline.baselines.settings import BaselineSettings
+from pipeline.baselines.rooms import BaselineSettings, Scaling, furniture, outlines
 from tests.diffusion.small_world import CLASSES, make_examples
 
 OPENS = torch.tensor([name in {"nightstand", "wardrobe"} for name in CLASSES])

@@ -1,7 +1,7 @@
 import torch
 
 from pipeline.baselines.atiss import Autoregressive, draw, log_likelihood, loss, sample
-from pipeline.baselines.training import Trainer
+from pipeline.baselines.job import Trainer
 from tests.diffusion.small_world import CLASSES, LAYOUTS
 
 

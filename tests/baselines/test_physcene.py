@@ -3,10 +3,8 @@ import pytest
 import torch
 from shapely import Polygon
 
-from pipeline.baselines import reachability
 from pipeline.baselines.boxes import boxes_of
-from pipeline.baselines.physcene import CLIP, MOVES, Guidance, beyond
-from pipeline.baselines.reachability import Boxes, robots, ways
+from pipeline.baselines.physcene import CLIP, MOVES, Guidance, Obstacles, beyond, handles, robots, ways
 from pipeline.geometry.boxes import footprints
 from tests.baselines.conftest import OPENS
 
@@ -47,20 +45,20 @@ def test_the_room_term_pushes_in_and_collisions_push_apart(scaling):
 
 
 def test_robots_stand_in_what_cuts_the_room_in_two():
-    bar = Boxes(np.array([[0.0, 0.0, 0.5]]), np.array([[4.2, 0.5, 1.0]]), np.zeros(1), np.zeros(1, bool))
+    bar = Obstacles(np.array([[0.0, 0.0, 0.5]]), np.array([[4.2, 0.5, 1.0]]), np.zeros(1), np.zeros(1, bool))
     at = robots(SQUARE, bar)
     assert 2 <= len(at) <= 4
     assert (abs(at[:, 1]) <= 0.3).all()
-    gap = Boxes(bar.centre + np.array([0.8, 0, 0]), bar.size, bar.yaw, bar.opens)
+    gap = Obstacles(bar.centre + np.array([0.8, 0, 0]), bar.size, bar.yaw, bar.opens)
     assert len(robots(SQUARE, gap)) == 0
-    assert len(robots(SQUARE, Boxes(bar.centre + np.array([0, 0, 2]), *bar[1:]))) == 0  # it hangs over the robot
+    assert len(robots(SQUARE, Obstacles(bar.centre + np.array([0, 0, 2]), *bar[1:]))) == 0  # it hangs over the robot
 
 
 def test_robots_go_to_what_opens():
     centre, size = np.array([[0.0, 1.7, 0.5], [0.0, 1.05, 0.4]]), np.array([[1.0, 0.6, 1.0], [3.98, 0.4, 0.8]])
     opens = np.array([True, False])
-    assert len(robots(SQUARE, Boxes(centre, size, np.zeros(2), opens))) > 0
-    handle = reachability.handles(Boxes(centre, size, np.zeros(2), opens))
+    assert len(robots(SQUARE, Obstacles(centre, size, np.zeros(2), opens))) > 0
+    handle = handles(Obstacles(centre, size, np.zeros(2), opens))
     assert handle.tolist() == [[0.0, pytest.approx(1.7 - 0.3 - 0.2 - 0.1 - 0.05)]]
 
 

@@ -7,8 +7,8 @@ import torch
 from pipeline import seeds
 from pipeline.baselines import diffuscene
 from pipeline.baselines.diffuscene import Denoiser, Levels, sample
+from pipeline.baselines.job import Trainer
 from pipeline.baselines.scenefoundry import Constraints, articulated_collision, loss, quantity, quantity_target
-from pipeline.baselines.training import Trainer
 from tests.baselines.conftest import OPENS
 from tests.diffusion.small_world import LAYOUTS
 

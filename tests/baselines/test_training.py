@@ -4,7 +4,7 @@ import pytest
 import torch
 
 from pipeline.baselines.atiss import Autoregressive, loss
-from pipeline.baselines.training import Trainer, train
+from pipeline.baselines.job import Trainer, train
 from tests.diffusion.small_world import LAYOUTS
 
 

@@ -3,7 +3,7 @@ import torch
 
 from pipeline.diffusion.batch import Objects, bucket_of, collate, moved_objects, moved_rooms, reflections
 from pipeline.diffusion.codec import Codec
-from pipeline.diffusion.constraints import articulated_collision
+from pipeline.diffusion.guidance import articulated_collision
 from pipeline.diffusion.relations import boxes_of, pair_relations, wall_relations
 from pipeline.diffusion.set_transformer import polygon_area
 from tests.diffusion.small_world import make_context
@@ -89,7 +89,7 @@ def test_trimming_keeps_every_token(examples, norm):
 
 
 def test_a_door_is_on_its_wall_and_keeps_its_hinge():
-    from pipeline.diffusion.floor import KINDS, floor_tokens
+    from pipeline.diffusion.context import KINDS, floor_tokens
 
     context = make_context(0)
     floor = floor_tokens(context)

@@ -9,19 +9,20 @@ from shapely.affinity import rotate, translate
 from pipeline import seeds
 from pipeline.diffusion.batch import room_batch
 from pipeline.diffusion.codec import Codec
-from pipeline.diffusion.constraints import (
+from pipeline.diffusion.context import floor_tokens
+from pipeline.diffusion.guidance import (
     DEEP,
     Prisms,
     articulated_collision,
+    articulation_descent,
     bodies,
     doorways,
     heuristic_sweeps,
     outside,
     overlap,
+    size_shift,
     swept,
 )
-from pipeline.diffusion.floor import floor_tokens
-from pipeline.diffusion.guidance import articulation_descent, size_shift
 from pipeline.diffusion.relations import Boxes, boxes_of
 from pipeline.diffusion.settings import SampleSettings
 from pipeline.geometry.kinematics import beyond_body

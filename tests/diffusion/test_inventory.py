@@ -9,7 +9,6 @@ from pipeline.diffusion.inventory import (
     Ask,
     Holdings,
     Inventory,
-    counts_of,
     draw_inventories,
     fit,
     initial_inventory,
@@ -26,7 +25,7 @@ BED, NIGHTSTAND, TABLE, CHAIR = (CLASSES.index(c) for c in ("double_bed", "night
 def rooms():
     made = make_examples(200)
     features = np.stack([room_features(e.floor, e.context.height) for e in made])
-    return Holdings(features, np.array([e.layout for e in made]), np.stack([counts_of(e.classes, len(CLASSES)) for e in made]))
+    return Holdings(features, np.array([e.layout for e in made]), np.stack([np.bincount(e.classes, minlength=len(CLASSES)) for e in made]))
 
 
 @pytest.fixture(scope="module")

@@ -1,8 +1,7 @@
 import numpy as np
 
 from pipeline import seeds
-from pipeline.diffusion.context import RoomContext, RoomOpening
-from pipeline.diffusion.floor import OPENINGS, WALLS, floor_tokens, simplify_polygon
+from pipeline.diffusion.context import OPENINGS, WALLS, RoomContext, RoomOpening, floor_tokens, simplify_polygon
 from pipeline.diffusion.rooms import sets_of, sweeps_by_asset
 from pipeline.entities.plan import Opening, Plan, Room, Swing
 from tests.diffusion.small_world import CLASSES, LAYOUTS, room_rows, shapes

@@ -54,9 +54,9 @@ def test_a_resumed_run_equals_an_undisturbed_one_bit_for_bit(header, data, tmp_p
     whole = trained(header, data, 6)
     checkpoint = Checkpoint(tmp_path / "checkpoint.safetensors", "digest")
     half = trained(header, data, 3)
-    checkpoint.save(half.done, half.groups())
+    checkpoint.keep(half.done, half.nets, half.optimiser)
     resumed = Trainer(0, header, SETTINGS, SETTINGS.steps, 3, CPU)
-    resumed.restore(*checkpoint.load())
+    resumed.done = checkpoint.resume(resumed.nets, resumed.optimiser)
     list(train(resumed, data))
     assert resumed.done == whole.done == 6
     assert not same(whole.net, half.net)
@@ -68,16 +68,18 @@ def test_a_checkpoint_of_something_else_or_damaged_starts_afresh(header, data, t
     path = tmp_path / "checkpoint.safetensors"
     checkpoint = Checkpoint(path, "digest")
     assert checkpoint.load() is None
-    checkpoint.save(1, trained(header, data, 1).groups())
+    half = trained(header, data, 1)
+    checkpoint.keep(1, half.nets, half.optimiser)
     assert checkpoint.load()[0] == 1
     assert Checkpoint(path, "other").load() is None
     path.write_bytes(path.read_bytes()[:1000])
     assert checkpoint.load() is None
 
 
-def test_checkpoints_are_written_when_due_and_at_the_end(header, data):
+def test_checkpoints_are_written_when_due_and_at_the_end(header, data, monkeypatch, tmp_path):
     done = []
-    list(train(Trainer(0, header, replace(SETTINGS, checkpoint_every=4), 6, 3, CPU), data, lambda t: done.append(t.done)))
+    monkeypatch.setattr(Checkpoint, "keep", lambda _, step, *_state: done.append(step))
+    list(train(Trainer(0, header, replace(SETTINGS, checkpoint_every=4), 6, 3, CPU), data, Checkpoint(tmp_path / "c", "x")))
     assert done == [4, 6]
 
 
@@ -213,7 +215,7 @@ def test_the_constraint_term_of_eq_1_has_a_switch_and_a_scale(header, data):
 
 
 def test_g_points_down_the_penalty(examples, norm):
-    from pipeline.diffusion.constraints import articulated_collision
+    from pipeline.diffusion.guidance import articulated_collision
     from pipeline.diffusion.relations import boxes_of
 
     codec = Codec(norm)

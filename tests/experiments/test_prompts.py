@@ -8,8 +8,7 @@ import pytest
 import yaml
 
 from pipeline.errors import ContentError, UsageError
-from pipeline.experiments.prompt_file import read_prompts
-from pipeline.experiments.prompts import CHECKED, SCORES, evaluate_prompts, report
+from pipeline.experiments.prompts import CHECKED, SCORES, evaluate_prompts, read_prompts, report
 from pipeline.floorplan import parse, solve
 from pipeline.metrics.plan_checks import CHECKS, MEASURES
 from pipeline.metrics.plan_scores import score

@@ -14,13 +14,12 @@ from conftest import factory, library  # noqa: F401 - the factory of rules
 from pipeline import tables
 from pipeline.entities.home import Home, Placement
 from pipeline.entities.plan import Plan, Room
-from pipeline.experiments.lineup import alone, by_type, lineup
+from pipeline.experiments.document import alone, by_type, lineup
 from pipeline.experiments.realism import Beside, alike, beside, embeddings, realism_table, shipped_rooms, unseen, view_figures
-from pipeline.experiments.rooms import FIRST
+from pipeline.experiments.trials import FIRST
 from pipeline.homes.rows import object_row, room_row, scene_row
 from pipeline.manifest import canonical
-from pipeline.metrics.perturbations import spoilt
-from pipeline.metrics.views import features_once
+from pipeline.metrics.views import features_once, spoilt
 from pipeline.relations import learning
 from pipeline.report.page import render
 from pipeline.report.realism import VOID, realism_section

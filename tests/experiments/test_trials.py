@@ -10,10 +10,9 @@ from conftest import Rules, factory, library  # noqa: F401 - the factory of rule
 
 from pipeline.errors import ContentError
 from pipeline.experiments import paper_tables
-from pipeline.experiments.rooms import spread
-from pipeline.experiments.rooms import test_rooms as rooms_of
-from pipeline.experiments.settings import MetricsSettings
+from pipeline.experiments.settings import MetricsSettings, spread
 from pipeline.experiments.trials import Condition, Drafts, Trial, trial
+from pipeline.experiments.trials import test_rooms as rooms_of
 from pipeline.homes.rows import opening_row, room_row, scene_row
 
 SETTINGS = MetricsSettings(rooms=2, counts=(3,), taus=(0.5, 0.7))

@@ -11,9 +11,8 @@ from pipeline import taxonomy
 from pipeline.errors import ContentError
 from pipeline.features import inception
 from pipeline.features import net as nets
-from pipeline.features.training import Examples, train
-from pipeline.metrics.perturbations import spoilt
-from pipeline.metrics.views import STATES, compare_views, features_once, views_of
+from pipeline.features.net import Examples, train
+from pipeline.metrics.views import STATES, compare_views, features_once, spoilt, views_of
 from tests.relations.making import bedrooms
 
 SAID = nets.header(("bedroom",), STATES, ("double_bed",))
@@ -59,7 +58,7 @@ def test_training_learns(monkeypatch):
     views = np.concatenate([views_of(rooms), views_of([spoilt(rng, room) for room in rooms])])
     states = np.repeat([0, 1], len(rooms))
     examples = Examples(views, np.zeros(len(views), int), states, np.tile(states, (5, 1)).T.astype(float))
-    monkeypatch.setattr("pipeline.features.training.EVERY", 10)
+    monkeypatch.setattr("pipeline.features.net.EVERY", 10)
     said = list(train(rng, nets.ViewNet(1, 2, 5), examples, 25, torch.device("cpu")))
     assert [part.done for part in said] == [10, 20, 25]
     assert said[-1].loss < said[0].loss

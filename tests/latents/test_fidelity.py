@@ -1,6 +1,6 @@
 import numpy as np
 
-from pipeline.latents.fidelity import self_ranking
+from pipeline.latents.training import self_ranking
 
 STORED = np.array([[0, 0], [1, 0], [1.02, 0], [9, 9]], np.float32)
 CATEGORIES = ["chair", "chair", "chair", "bed"]

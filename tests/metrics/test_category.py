@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.metrics.category import ckl, divergence, frequencies
+from pipeline.metrics.two_samples import ckl, divergence, frequencies
 
 NAMES = ("bed", "chair", "table")
 

@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.geometry.kinematics import sweep_box
-from pipeline.metrics import articulation, collision
+from pipeline.metrics import collision
 from tests.geometry.furniture import LIBRARY
 from tests.metrics.rows_of import joint_row, moved_rows, object_row, random_rows
 
-SWEEPS = articulation.sweeps_of(
+SWEEPS = collision.sweeps_of(
     [
         {"asset_id": a.asset_id, "part_class": j.part_class, "sweep_min": box[0].tolist(), "sweep_max": box[1].tolist()}
         for a in LIBRARY.values()
@@ -32,7 +32,7 @@ def test_nothing_hangs_on_where_the_room_lies(seed, angle, dx, dy):
     assert np.array_equal(collision.bbox_hits(here), collision.bbox_hits(there))
     assert np.array_equal(collision.prism_hits(here, LIBRARY), collision.prism_hits(there, LIBRARY))
     for kind in ("heuristic", "joints"):
-        assert articulation.are_obstructed(here, kind, SWEEPS) == articulation.are_obstructed(there, kind, SWEEPS)
+        assert collision.are_obstructed(here, kind, SWEEPS) == collision.are_obstructed(there, kind, SWEEPS)
 
 
 @settings(max_examples=25, deadline=None)
@@ -70,13 +70,13 @@ def test_touching_boxes_do_not_collide():
 def test_a_blocked_drawer(gap, heuristic, joints):
     # The heuristic adds a third of the depth (17 cm), the drawer comes out by 40 cm and its handle by 3 more.
     rows = blocked_chest(gap)
-    assert articulation.are_obstructed(rows, "heuristic") == [heuristic]
-    assert articulation.are_obstructed(rows, "joints", SWEEPS) == [joints]
+    assert collision.are_obstructed(rows, "heuristic") == [heuristic]
+    assert collision.are_obstructed(rows, "joints", SWEEPS) == [joints]
 
 
 def test_extended_boxes_hold_the_sweep():
     rows = [object_row("cupboard", 1.0, 1.0, 0.7), object_row("bed", 3, 3)]
-    (position, yaw, size), owners = articulation.extended_boxes(rows, "joints", SWEEPS)
+    (position, yaw, size), owners = collision.extended_boxes(rows, "joints", SWEEPS)
     assert owners.tolist() == [0, 1, *[0] * (len(owners) - 2)]
     assert size[:2].tolist() == [rows[0]["size"], rows[1]["size"]]
     # What the doors sweep lies ahead of the front, and reaches 60 cm.
@@ -90,15 +90,15 @@ def test_a_door_that_opens_wider_than_its_cupboard_does_not_block_the_one_beside
     # The box of the whole way holds the shut door and the handle that later stands out beside the body: 2 cm of the neighbour, behind the front.
     past_side = {"cupboard": SWEEPS["cupboard"] + np.array([[-0.03, 0.0, 0.0], [0.03, 0.0, 0.0]])}
     beside, ahead = ([object_row("cupboard", 1.0, 1.0), object_row("small_block", 1.66, y)] for y in (1.05, 0.6))
-    assert articulation.are_obstructed(beside, "joints", past_side) == [False]
-    assert articulation.are_obstructed(ahead, "joints", past_side) == [True]
+    assert collision.are_obstructed(beside, "joints", past_side) == [False]
+    assert collision.are_obstructed(ahead, "joints", past_side) == [True]
 
 
 def test_acoll_is_a_mean_of_rooms():
     rows = [r | {"room_id": room} for room, gap in (("a", 0.1), ("b", 0.9)) for r in blocked_chest(gap)] + [
         object_row("bed", 1, 1, room="c")
     ]
-    found = articulation.acoll(np.random.default_rng(0), rows, "joints", SWEEPS)
+    found = collision.acoll(np.random.default_rng(0), rows, "joints", SWEEPS)
     assert (found["rooms"]["mean"], found["rooms"]["n"]) == (0.5, 2)
     assert (found["objects"]["rate"], found["objects"]["n"]) == (0.5, 2)
 
@@ -106,7 +106,7 @@ def test_acoll_is_a_mean_of_rooms():
 def test_two_extended_boxes_meet_only_in_the_papers_metric():
     # Two chests face each other at 60 cm: each opens, both at once do not (b' against b', paper eq. acoll_metric).
     rows = [object_row("chest", 2.0, 2.0), object_row("chest", 2.0, 2.0 - 0.5 - 0.6, math.pi, number=1)]
-    assert articulation.are_obstructed(rows, "joints", SWEEPS) == [True, True]
+    assert collision.are_obstructed(rows, "joints", SWEEPS) == [True, True]
 
 
 def test_swept_counts_objects_joints_and_doors():
@@ -117,7 +117,7 @@ def test_swept_counts_objects_joints_and_doors():
         joint_row("door", part="door_leaf", clear=False),
         joint_row("b", part="hinge_knob", clear=False),
     ]
-    found = articulation.swept(iter(rows))
+    found = collision.swept(iter(rows))
     assert (found["objects"]["successes"], found["objects"]["n"]) == (1, 2)
     assert (found["joints"]["successes"], found["joints"]["n"]) == (1, 3)
     assert (found["doors"]["successes"], found["doors"]["n"]) == (1, 1)

@@ -10,8 +10,7 @@ import yaml
 
 from pipeline.entities.plan import Opening, Plan, Room, Swing
 from pipeline.metrics.plan_checks import CHECKS, constraint
-from pipeline.metrics.plan_graph import edges_of, match
-from pipeline.metrics.plan_scene import Scene
+from pipeline.metrics.plan_graph import Scene, edges_of, match
 from pipeline.metrics.plan_scores import s_constraint, score
 
 

@@ -3,7 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.metrics.reach import openable_reach, reach, room_reach
+from pipeline.metrics.collision import openable_reach
+from pipeline.metrics.reach import reach, room_reach
 from tests.metrics.rows_of import joint_row, moved_rows, object_row, room_row
 
 ROOM = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])

@@ -5,9 +5,9 @@ import pytest
 
 from pipeline.metrics import novelty, relations
 from pipeline.metrics.layout_features import features
-from pipeline.metrics.perturbations import HARMS, jitter, permute_yaws, spoilt, swap_places
 from pipeline.metrics.rules import RULES, backs
 from pipeline.metrics.two_samples import forest_accuracy, frechet, kernel_distance, linear_accuracy
+from pipeline.metrics.views import HARMS, jitter, permute_yaws, spoilt, swap_places
 from pipeline.relations import learning
 from pipeline.relations.arrangement import make_arrangement
 from tests.relations.making import bedrooms
