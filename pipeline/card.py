@@ -174,6 +174,11 @@ class Category:
         """Whether it lies where it was put and can be taken away: a body of its own in simulators. Not so a rug, under furniture."""
         return not self.layout and self.mount == "floor" and not self.fixed
 
+    @property
+    def tuck_role(self) -> int:
+        """1 for a seat, 2 for a table, 0 for the rest: of two things whose roles add up to 3 one may stand under the other."""
+        return {"": 0, "seat": 1, "table": 2}[self.tuck]
+
 
 @functools.cache
 def cards() -> Mapping[str, Category]:

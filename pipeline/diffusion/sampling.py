@@ -153,7 +153,7 @@ class Sampler:
 def tuck_roles(classes: Sequence[str]) -> Tensor:
     """Return by class (C + 1,), the last one empty: 1 for what stands under tables, 2 for tables, 0 for the rest."""
     known = taxonomy.load().categories
-    return torch.tensor([{"seat": 1, "table": 2}.get(known[name].tuck or "", 0) for name in classes] + [0])
+    return torch.tensor([known[name].tuck_role for name in classes] + [0])
 
 
 def openable_classes(classes: Sequence[str]) -> Tensor:

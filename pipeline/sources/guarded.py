@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, NoReturn
 
+import defusedxml
 import numpy as np
+from defusedxml import ElementTree
 
 from pipeline.arrays import Floats
 from pipeline.sources.reasons import SourceError
@@ -144,3 +146,18 @@ def parse_json(data: bytes, where: str, lines: int = 0, characters: int = 0) -> 
         raise SourceError("not_json", where, f"cannot be parsed ({error.msg[:60]}: {place})") from error
     except ValueError as error:
         raise SourceError("not_json", where, f"cannot be parsed ({str(error)[:80]})") from error
+
+
+def xml_root(data: bytes, code: str, where: str, most: int) -> Any:
+    """Return the root element of a document of at most `most` opening brackets.
+
+    Raises SourceError `too_large`, or `code` for what is not XML or holds a DTD, an entity or an external reference, naming `where`.
+    """
+    if data.count(b"<") > most:
+        raise SourceError("too_large", where, "has too many elements")
+    try:
+        return ElementTree.fromstring(data, forbid_dtd=True)
+    except defusedxml.DefusedXmlException as error:
+        raise SourceError(code, where, "has a DTD, an entity or an external reference") from error
+    except (ElementTree.ParseError, ValueError, LookupError, RecursionError) as error:
+        raise SourceError(code, where, f"is not XML ({str(error)[:80]})") from error

@@ -4,6 +4,7 @@ import pytest
 from pipeline.entities.files import load_asset
 from pipeline.sources.meshes.collada_file import parse_dae
 from pipeline.sources.meshes.mesh_solids import signed_volume
+from pipeline.sources.meshes.obj_file import linear
 from pipeline.sources.reasons import SourceError
 from tests.sources import collada, making
 from tests.sources.reading import read
@@ -98,7 +99,7 @@ def test_nodes_that_are_used_twice_are_there_twice():
 def test_materials(diffuse, more, color, opacity, image):
     _, group, materials = read_file(diffuse=diffuse, more=more, image="old%20wood.png")
     assert group.material == "red"
-    assert materials["red"].diffuse == pytest.approx(color)
+    assert materials["red"].color == pytest.approx(linear(color))
     assert materials["red"].opacity == pytest.approx(opacity)
     assert materials["red"].map == image
 

@@ -5,10 +5,9 @@ import pytest
 
 from pipeline import taxonomy
 from pipeline.sources.settings import FrontFilters
-from pipeline.sources.threed_front.furniture import Placed, find_overlaps
+from pipeline.sources.threed_front.furniture import Placed, find_overlaps, hangs_in_air, supports
 from pipeline.sources.threed_front.house_file import Child
 from pipeline.sources.threed_front.poses import Pose
-from pipeline.sources.threed_front.supports import hangs_in_air, supports
 
 WORDS = taxonomy.load()
 

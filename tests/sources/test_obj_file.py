@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.sources.meshes.obj_file import parse_mtl, parse_obj
+from pipeline.sources.meshes.obj_file import linear, parse_mtl, parse_obj
 from pipeline.sources.reasons import SourceError
 from tests.sources.making import box_obj
 
@@ -106,7 +106,7 @@ def test_refused(text, code):
 def test_mtl():
     text = b"newmtl a\nKd 0.1 0.2 2\nmap_Kd -s 1 1 1 my tex.png\nd 0.5\nKe 1 1 1\nNs nan\nnewmtl b\nKd x\nTr 0.25\nmap_Kd\n"
     found = parse_mtl(text)
-    assert found["a"].diffuse == (0.1, 0.2, 1.0)
+    assert found["a"].color == linear((0.1, 0.2, 1.0))
     assert found["a"].map == "my tex.png"
     assert (found["a"].opacity, found["b"].opacity) == (0.5, 0.75)
     assert found["b"].map == ""

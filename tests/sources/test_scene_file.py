@@ -53,7 +53,7 @@ def test_a_cube_with_its_material():
     assert file.groups[0].faces.tolist() == FACES.tolist()
     assert file.uvs[0].tolist() == [0.0, 0.75]
     assert materials == {"0": materials["0"]}
-    assert materials["0"].color == pytest.approx((1.0, 0.0, 0.0, 0.5), abs=1 / 255)
+    assert (*materials["0"].color, materials["0"].opacity) == pytest.approx((1.0, 0.0, 0.0, 0.5), abs=1 / 255)
     assert materials["0"].image == b""
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from pipeline.sources.meshes.mesh_solids import hull
-from pipeline.sources.meshes.sides import SIDES, count_sides, with_few_sides
+from pipeline.sources.meshes.near_boxes import SIDES, count_sides, with_few_sides
 
 
 def disc(count=16, radius=0.6):

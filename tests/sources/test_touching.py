@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.spatial import ConvexHull
 
@@ -11,7 +9,16 @@ from pipeline import taxonomy
 from pipeline.sources.meshes.mesh_solids import convex_part, distances_outside
 from pipeline.sources.meshes.near_boxes import CORNERS
 from pipeline.sources.meshes.small_parts import without_feet
-from pipeline.sources.meshes.touching import FELT, TouchTolerances, drop_unfelt, merge_by_touch, simplify_pieces, touch_tolerances
+from pipeline.sources.meshes.touching import (
+    ANY,
+    FELT,
+    OVER,
+    TouchTolerances,
+    drop_unfelt,
+    merge_by_touch,
+    simplify_pieces,
+    touch_tolerances,
+)
 
 
 def block(low, high):
@@ -205,15 +212,6 @@ def test_spindles_of_a_bed_are_one_and_table_legs_stay():
     assert len(simplify_pieces([*legs, top], touch_tolerances(categories["dining_table"], opens=False))) == 5
 
 
-def test_a_low_table_stands_on_one_block_but_for_a_shelf_between_its_legs():
-    how = touch_tolerances(taxonomy.load().categories["coffee_table"], opens=False)
-    legs = [block((x, y, 0), (x + 0.04, y + 0.04, 0.4)) for x in (0, 0.9) for y in (0, 0.5)]
-    top, shelf = block((0, 0, 0.4), (0.94, 0.54, 0.43)), block((0.04, 0.04, 0.25), (0.9, 0.5, 0.27))
-    assert sorted(round(float(p.hull[:, 2].max()), 3) for p in simplify_pieces([*legs, top], how)) == [0.4, 0.43]
-    assert len(simplify_pieces([*legs, top, shelf], how)) == 6
-    assert len(simplify_pieces([*legs, top], replace(how, legs=0.3))) == 5  # something comes out at that height
-
-
 def test_under_a_bar_nothing_is_felt_that_the_bar_does_not_keep_one_from():
     arch = [
         convex_part(np.array([(x, y + d, z) for x in (0, 0.02) for y, z in ends for d in (0, 0.02)]), 1.0)
@@ -225,27 +223,15 @@ def test_under_a_bar_nothing_is_felt_that_the_bar_does_not_keep_one_from():
     assert len(merge_by_touch([*arch, top], even(0.01), 0.02, sag=0.05)) == 3
 
 
-def test_each_sector_of_a_bowl_has_its_slice_of_the_floor():
-    turn = 2 * np.pi * np.arange(24) / 24
-    circle = 0.03 * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    floor = convex_part(np.concatenate([np.column_stack([circle, np.full(24, z)]) for z in (0, 0.006)]), 1.0)
-    wall = []
-    for k in range(24):
-        flat = np.stack([np.cos(turn[[k, (k + 1) % 24]]), np.sin(turn[[k, (k + 1) % 24]])], axis=1)
-        wall.append(
-            convex_part(
-                np.concatenate(
-                    [np.column_stack([r * flat, np.full(2, z)]) for r, z in ((0.025, 0.006), (0.03, 0.006), (0.075, 0.08), (0.08, 0.08))]
-                ),
-                1.0,
-            )
-        )
-    found = simplify_pieces([*wall, floor], TouchTolerances(vessel=True))
-    assert len(found) <= 4
-    assert all(p.hull[:, 2].min() == 0 for p in found)
-    assert all((ConvexHull(p.hull).equations @ [0.0, 0.0, 0.07, 1.0]).max() > 0 for p in found)  # its hollow stays
-
-
 def test_a_cup_with_its_handle_is_truer_than_a_bottle():
     categories = taxonomy.load().categories
     assert touch_tolerances(categories["cup"], opens=False).sides < touch_tolerances(categories["bottle"], opens=False).sides
+
+
+def test_nothing_is_felt_above_what_a_robot_comes_to():
+    how = touch_tolerances(taxonomy.load().categories["wardrobe"], opens=False)
+    assert (how.over, touch_tolerances(taxonomy.load().categories["wall_cabinet"], opens=False).over) == (OVER, ANY)
+    for height, count in ((2.15, 3), (1.55, 4)):
+        sides = [block((x, 0, 0), (x + 0.02, 0.6, height)) for x in (0.0, 1.0)]
+        shelf, top = block((0.02, 0, 0.7 * height), (1.0, 0.6, 0.7 * height + 0.02)), block((0.0, 0, height), (1.02, 0.6, height + 0.03))
+        assert len(simplify_pieces([*sides, shelf, top], how)) == count

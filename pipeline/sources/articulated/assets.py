@@ -8,15 +8,14 @@ import numpy as np
 from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset, Joint, Link, PartBox
 from pipeline.geometry.prerequisites import with_prerequisites
-from pipeline.sources.articulated.fitting import fit_shape
 from pipeline.sources.articulated.hidden_boards import without_hidden
-from pipeline.sources.articulated.metric_scale import Fit, Proportions
+from pipeline.sources.articulated.metric_scale import Fit, Proportions, fit_shape
 from pipeline.sources.articulated.shape import ArticulatedShape, ShapeBody, ShapeJoint
 from pipeline.sources.articulated.shape_reader import distinct_names
 from pipeline.sources.densities import density
 from pipeline.sources.meshes.colliders import POCKET, Solids, bodies_solids, build_link, matter_volume, solids
 from pipeline.sources.meshes.inertials import Inertial, combine_inertials, inertia_flaw, mass_flaw
-from pipeline.sources.meshes.small_parts import LOW, UNDER
+from pipeline.sources.meshes.small_parts import UNDER
 from pipeline.sources.meshes.touching import ANY, BUMPED, LEFT_ALONE, OVER, SAG, touch_tolerances
 from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import ModelLimits
@@ -52,12 +51,12 @@ def assets(
     for number, fit in enumerate(fits):
         category = taxonomy.categories[fit.category]
         kind, how = category.super, touch_tolerances(category, opens=True)
-        lowest = min([LOW, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
+        lowest = min([UNDER, *(float((body.points()[:, 2] - middle[2]).min()) * fit.scale for body in bodies[1:])])
         over = OVER if category.mount == "floor" else ANY
         # nothing comes into a lid from below
         felt = {joint.child: replace(how, down=LEFT_ALONE) for joint in shape.joints if joint.part_class in LIDS}
         if not category.loose:
-            felt[0] = replace(how, sides=BUMPED, down=LEFT_ALONE, under=min(UNDER, lowest), over=over, sag=SAG, legs=lowest)
+            felt[0] = replace(how, sides=BUMPED, down=LEFT_ALONE, under=lowest, over=over, sag=SAG)
         links: list[Link] = []
         weighed = []
         for k, (body, solid) in enumerate(zip(bodies, matter, strict=True)):

@@ -9,12 +9,11 @@ import numpy as np
 from pipeline.arrays import Floats
 from pipeline.entities.asset import PART_CLASSES, JointType
 from pipeline.geometry.kinematics import joint_motion
-from pipeline.sources.articulated.mobility_v2 import Mobility
-from pipeline.sources.articulated.part_classes import words_of
+from pipeline.sources.articulated.part_classes import Mobility, words_of
 from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, apply, span_of
 from pipeline.sources.articulated.urdf import UrdfJoint
 from pipeline.sources.meshes.mesh_solids import even_directions
-from pipeline.sources.meshes.sides import AROUND
+from pipeline.sources.meshes.near_boxes import AROUND
 
 TURNS = 4 * math.pi  # [rad] a range beyond this is no limit
 SMALLEST = {"revolute": 1e-3, "prismatic": 1e-4}  # ranges [rad, units] below which nothing moves

@@ -13,8 +13,8 @@ from pipeline.sources.articulated.urdf import Shape
 from pipeline.sources.guarded import Folder
 from pipeline.sources.meshes.collada_file import MAX_DAE, parse_dae
 from pipeline.sources.meshes.mesh_solids import even_directions, hull
-from pipeline.sources.meshes.obj_file import MAX_OBJ, MtlMaterial, ObjFile, ObjGroup, parse_obj
-from pipeline.sources.meshes.scene_file import MAX_SCENE, SceneMaterial, parse_scene
+from pipeline.sources.meshes.obj_file import MAX_OBJ, MeshMaterial, ObjFile, ObjGroup, parse_obj
+from pipeline.sources.meshes.scene_file import MAX_SCENE, parse_scene
 from pipeline.sources.reasons import SourceError
 
 PACKAGE = re.compile(r"^(?:package|model)://", re.IGNORECASE)
@@ -28,7 +28,7 @@ class MeshFiles:
         self.folder, self.base, self.notes = folder, base, notes
         self.files: dict[str, ObjFile | None] = {}
         # By mesh file and name, where a file brings its own.
-        self.materials: dict[str, dict[str, SceneMaterial] | dict[str, MtlMaterial]] = {}
+        self.materials: dict[str, dict[str, MeshMaterial]] = {}
         self.total = 0
         self._places: dict[str, str] = {}
 

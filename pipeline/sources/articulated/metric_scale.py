@@ -5,22 +5,36 @@ category's sizes by maximum likelihood. Proportions alone rarely tell which cate
 nightstand has those of a kitchen unit. So categories compare by what the object would be at their scale: how likely its
 size is, how large its doors, drawers, handles and boards would be, which of them such furniture has
 (`category_signs`), and how common the category is.
+
+Real things are drawn open (laptops), lying or upright (a remote), along their depth (toasters), with a handle pulled out
+(suitcases) or without the frame that one assumes (doors). What fits as drawn is taken so; else folded or turned, else by wide priors.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from pipeline.arrays import Floats
-from pipeline.sources.articulated.category_signs import Signs, log_likelihood
+from pipeline.sources.articulated.category_signs import Signs, log_likelihood, signs
+from pipeline.sources.articulated.joint_rules import fold_shape
 from pipeline.sources.articulated.part_classes import text_field
+from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.guarded import MIB, Folder, finite_array, read_json
+from pipeline.sources.meshes.mesh_solids import Part
 from pipeline.sources.reasons import SourceError
+from pipeline.sources.settings import ModelLimits
 from pipeline.sources.sizes import sizes
 
+AS_DRAWN, ALONG = (0, 1, 2), (1, 0, 2)  # its own width and depth, and exchanged: built along its depth, its front stays in front
+# Rotations to what lies and what stands, and the log-likelihood that it costs to believe them.
+LAID = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # on its back: the front looks up
+STOOD = LAID.T
+TURN, EXCHANGE, FOLD = 3.0, 0.5, 0.1
+ANYTHING = 20  # categories from which on nobody has said what it is: then nothing but its size tells
 COMMON = 30  # models that every category counts beside its own, so that none is ruled out for being rare
 UNITS = (1.0, 0.01, 0.001)  # metres per unit of files that are to scale: metres, centimetres, millimetres
 METRIC = 2.5  # rms of standard deviations within which a shape passes for one that is in metres already
@@ -148,3 +162,62 @@ def gather_proportions(objects: Iterable[tuple[str, Floats] | None]) -> Mapping[
             spread = NORMAL * np.median(np.abs(np.array(rows) - middle), axis=0)
             by_category[category] = Proportions(middle, np.maximum(spread, LEAST))
     return by_category
+
+
+@dataclass(frozen=True, slots=True)
+class _Variant:
+    shape: ArticulatedShape
+    order: tuple[int, int, int]
+    cost: float
+    what: str
+
+
+def fit_shape(
+    shape: ArticulatedShape, base: Sequence[Part], categories: Sequence[str], limits: ModelLimits, own: Proportions | None
+) -> tuple[ArticulatedShape, tuple[Fit, ...]]:
+    """Return the shape as it fits best, and its fits, likeliest first; none where it is nothing of the kind.
+
+    `base` are convex pieces of its body, `own` the proportions of the objects of its model category.
+    """
+
+    def fits(variant: _Variant, fit_one: Callable[..., Fit | None], rms: float) -> tuple[Fit, ...]:
+        extent, observed = variant.shape.extent[list(variant.order)], signs(variant.shape, base)
+        tried = [fit_one(extent, category, observed) for category in categories]
+        return best_fits(tried, rms=rms, keep=limits.fit_keep, margin=limits.fit_margin)
+
+    # A file by itself is taken to be to scale where that makes it furniture.
+    to_scale: list[Callable[..., Fit | None]] = [partial(fit_metric, unit=unit) for unit in UNITS] if shape.source == "urdf" else []
+    for fit_one in (*to_scale, fit):
+        if fitting := fits(_Variant(shape, AS_DRAWN, 0.0, ""), fit_one, limits.fit_rms if fit_one is fit else np.inf):
+            return shape, fitting
+    variants = list(_variants(shape))
+    for wide in (False, True):
+        if wide and shape.source == "urdf" and len(categories) > ANYTHING:
+            break
+        candidates = []
+        for variant in variants:
+            # Objects of a category are compared as they are drawn: turned ones are another matter.
+            speaks = own if variant.order == AS_DRAWN and variant.cost <= FOLD else None
+            how = partial(fit_wide, own=speaks) if wide else fit
+            if fitting := fits(variant, how, np.inf if wide else limits.fit_rms):
+                candidates.append((fitting[0].likelihood - variant.cost, variant, fitting))
+        if candidates:
+            _, best, fitting = max(candidates, key=lambda entry: entry[0])
+            what = ", ".join(filter(None, (best.what, "wide priors" if wide else ""))) or "as drawn"
+            shape = best.shape.copied()
+            shape.notes.append(("model", "refitted", f"{what}: rms {fitting[0].rms:.2f} as {fitting[0].category}"))
+            return shape, fitting
+    return shape, ()
+
+
+def _variants(shape: ArticulatedShape) -> Iterator[_Variant]:
+    less = fold_shape(shape)
+    for state, cost, what in ((shape, 0.0, ""), *(((less, FOLD, "folded"),) if less is not None else ())):
+        turned = [(state, cost, what)]
+        if shape.source != "urdf":  # whose frame has been looked for already
+            turned += [
+                (state.turned(R), cost + TURN, f"{what} {word}".strip()) for R, word in ((LAID, "laid on its back"), (STOOD, "stood up"))
+            ]
+        for other, price, how in turned:
+            yield _Variant(other, AS_DRAWN, price, how)
+            yield _Variant(other, ALONG, price + EXCHANGE, f"{how} along its depth".strip())

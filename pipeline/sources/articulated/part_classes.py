@@ -1,5 +1,6 @@
-"""GAPartNet part classes of links: from the annotation, else guessed from names, from the joint and from the shape."""
+"""What PartNet's and GAPartNet's own files say of links: part classes, else guessed from names, joint and shape; and what a joint is where the URDF does not say."""
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from pipeline.entities.asset import PART_CLASSES
 from pipeline.sources.guarded import MIB, Folder, finite_array, read_json
 from pipeline.sources.reasons import SourceError
 
+NAME = "mobility_v2.json"
 ANNOTATION = "link_annotation_gapartnet.json"
 FIXED_PARTS = frozenset({"line_fixed_handle", "round_fixed_handle", "slider_button", "hinge_handle", "hinge_knob"})
 # Words of PartNet's part names, first match wins; (word, class of a turning part, class of a sliding one).
@@ -155,3 +157,39 @@ def fixed_class(link: str, visual: str, annotated: Mapping[str, Annotation], ext
         return ""
     long, wide, _ = sorted(extent.tolist(), reverse=True)
     return "line_fixed_handle" if long > LINE * wide else "round_fixed_handle"
+
+
+@dataclass(frozen=True, slots=True)
+class Mobility:
+    """One entry of mobility_v2.json: PartNet's word for the joint and the part, the axis, limits [rad or units] about it, whether it has none.
+
+    The file is a list of {id, parent, joint, name, jointData}; entry k is link_k of the URDF. Degrees for hinges, the mesh's units for
+    sliders; the direction is along the mesh's axes, as the URDF's axes are; b may be less than a.
+    """
+
+    joint: str
+    name: str
+    direction: Floats | None
+    limits: tuple[float, float] | None
+    free: bool
+
+
+def mobility(folder: Folder) -> dict[str, Mobility]:
+    """Return {link: entry}, {} where there is no such file; entries that make no sense are left out."""
+    if not folder.has(NAME):
+        return {}
+    tree = read_json(folder, NAME, 16 * MIB)
+    entries = tree if isinstance(tree, list) else []
+    return {f"link_{e['id']}": _entry(e) for e in entries if isinstance(e, dict) and type(e.get("id")) is int}
+
+
+def _entry(entry: dict[str, Any]) -> Mobility:
+    joint, data = text_field(entry, "joint"), entry.get("jointData")
+    data = data if isinstance(data, dict) else {}
+    axis, limit = data.get("axis"), data.get("limit")
+    direction = finite_array(axis.get("direction"), 3) if isinstance(axis, dict) else None
+    limit = limit if isinstance(limit, dict) else {}
+    ends = finite_array([limit.get("a"), limit.get("b")], 2)
+    scale = math.pi / 180 if joint == "hinge" else 1.0
+    limits = None if ends is None else (float(ends[0]) * scale, float(ends[1]) * scale)
+    return Mobility(joint, text_field(entry, "name"), direction, limits, limit.get("noLimit") is True)

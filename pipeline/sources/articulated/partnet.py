@@ -8,9 +8,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pipeline.sources.articulated.mobility_v2 import mobility
 from pipeline.sources.articulated.part_boxes import complete_shape
-from pipeline.sources.articulated.part_classes import annotated_links, semantics, text_field
+from pipeline.sources.articulated.part_classes import annotated_links, mobility, semantics, text_field
 from pipeline.sources.articulated.shape import ArticulatedShape
 from pipeline.sources.articulated.shape_reader import Hints, ShapeReader
 from pipeline.sources.articulated.urdf import MAX_URDF, parse_urdf

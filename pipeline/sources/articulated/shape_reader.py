@@ -12,17 +12,17 @@ from pipeline.arrays import Floats
 from pipeline.entities.asset import Mesh, PartBox
 from pipeline.sources.articulated import joint_rules
 from pipeline.sources.articulated.mesh_files import MeshFiles
-from pipeline.sources.articulated.mobility_v2 import Mobility
-from pipeline.sources.articulated.part_classes import Annotation, box_of, fixed_class, named_class
+from pipeline.sources.articulated.part_classes import Annotation, Mobility, box_of, fixed_class, named_class
 from pipeline.sources.articulated.shape import ArticulatedShape, Note, ShapeBody, ShapeJoint, span_of
 from pipeline.sources.articulated.urdf import Shape, Urdf, UrdfLink
 from pipeline.sources.guarded import Folder
 from pipeline.sources.meshes.near_boxes import FACES
-from pipeline.sources.meshes.obj_file import MtlMaterial, ObjFile, ObjGroup
+from pipeline.sources.meshes.obj_file import MeshMaterial, ObjFile, ObjGroup, linear
 from pipeline.sources.meshes.visual_meshes import Palette, visual_mesh
 from pipeline.sources.reasons import SourceError
 
 LIKE = 0.03  # share of the object's diagonal within which the boxes of two sets of meshes of a body agree
+PLAIN = 0.6  # roughness of what has no more than a colour
 POST = 0.02  # the same for the thickness of the post that stands in for a frame that a door lacks
 
 
@@ -131,13 +131,11 @@ class ShapeReader:
         own = self.files.materials.get(shape.mesh, {}).get(group.material)
         base = PurePosixPath(self.base, self.files.place(shape.mesh).replace("\\", "/")).parent.as_posix() if shape.mesh else ""
         base = "" if base == "." else base
-        if isinstance(own, MtlMaterial):
-            return self.palette.entry(own, base)
-        if own:
-            return self.palette.own(own.color, own.roughness, own.image, f"{shape.mesh}#{group.material}")
-        if shape.color and not file.library:
-            return self.palette.add(shape.color[:3], shape.color[3], None)
-        return self.palette.index(file.library, base, group.material)
+        if own is None and shape.color and not file.library:
+            own = MeshMaterial(linear(shape.color[:3]), shape.color[3], PLAIN)
+        if own is not None:
+            return self.palette.index(own, base, f"{shape.mesh}#{group.material}")
+        return self.palette.named(file.library, base, group.material)
 
     def _borrow_looks(self, bodies: list[ShapeBody], body_of: Mapping[str, int]) -> None:
         """Take the visuals of the second URDF where it has the same links in the same places; else keep our own."""
@@ -163,7 +161,7 @@ class ShapeReader:
         """See that every body has visuals, and the base something to be seen at all."""
         for body in shape.bodies:
             if not body.visuals and body.collisions:
-                material = self.palette.add((0.7, 0.7, 0.7), 1.0, None)
+                material = self.palette.index(MeshMaterial(linear((0.7, 0.7, 0.7)), roughness=PLAIN), "")
                 body.visuals = [
                     Mesh(f"mesh_{k:03d}", v.astype(np.float32), f.astype(np.int32), material) for k, (v, f) in enumerate(body.collisions)
                 ]
@@ -173,7 +171,7 @@ class ShapeReader:
         carried = [j for j in shape.joints if j.parent == 0]
         if [j.type for j in carried] != ["revolute"] or any(reason == "missing_mesh" for _, reason, _ in self.notes):
             raise SourceError("no_base", shape.source_id, "its root body has no geometry")
-        material = self.palette.add((0.6, 0.6, 0.6), 1.0, None)
+        material = self.palette.index(MeshMaterial(linear((0.6, 0.6, 0.6)), roughness=PLAIN), "")
         shape.bodies[0].visuals = [Mesh("post", _post(shape, carried[0]).astype(np.float32), FACES.astype(np.int32), material)]
         self.notes.append(("model", "base_made", f"a post along the hinge {carried[0].name}"))
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from pipeline.arrays import Floats
+from pipeline.sources.guarded import xml_root
 from pipeline.sources.meshes.inertials import Inertial
-from pipeline.sources.meshes.xml_file import xml_root
 from pipeline.sources.reasons import SourceError
 
 MAX_URDF = 8 << 20  # bytes

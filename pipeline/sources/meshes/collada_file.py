@@ -1,33 +1,38 @@
 """COLLADA 1.4 and 1.5 files (.dae) as meshes, for URDFs whose meshes are of that kind.
 
 Read: the scene's nodes with their transforms, triangles, polylists, polygons, strips and fans, the first set of uvs, the
-unit and the axis that is up (turned to z, as a URDF's frames have it); `collada_materials` reads what colours them. Left
+unit and the axis that is up (turned to z, as a URDF's frames have it), colours and textures. Left
 out: lines, holes of polygons, skins, cameras, lights. A DTD, an entity or an external reference is refused.
 """
 
+import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrays import Floats, Ints
-from pipeline.sources.meshes.collada_materials import Elements, material
+from pipeline.sources.guarded import xml_root
 from pipeline.sources.meshes.obj_file import (
     MAX_COORDINATE,
     MAX_FACES,
     MAX_GROUPS,
     MAX_UVS,
     MAX_VERTICES,
-    MtlMaterial,
+    MeshMaterial,
     ObjFile,
     ObjGroup,
     fans,
+    linear,
+    roughness_of,
 )
-from pipeline.sources.meshes.xml_file import xml_root
 from pipeline.sources.reasons import SourceError
 
+Elements = Mapping[str, Any]  # of a file, by id
+SHADERS = ("phong", "lambert", "blinn", "constant")
 MAX_DAE = 16 << 20  # bytes; numbers of one digit take eight times their text
 MAX_ELEMENTS = 200_000
 DEPTH = 64  # of the tree of nodes
@@ -42,7 +47,7 @@ UPRIGHT = {
 KINDS = frozenset({"triangles", "polylist", "polygons", "tristrips", "trifans"})
 
 
-def parse_dae(data: bytes, where: str) -> tuple[ObjFile, dict[str, MtlMaterial]]:
+def parse_dae(data: bytes, where: str) -> tuple[ObjFile, dict[str, MeshMaterial]]:
     """Return the file's triangles [m, z up], a group per primitive, and its materials by name.
 
     Raises SourceError `not_obj`, `bad_number` or `too_large`, naming `where`.
@@ -74,7 +79,7 @@ class _Reader:
         self.counts = [0, 0, 0]  # vertices, uvs, faces
         self.visits = 0  # of nodes and primitives: a few nodes that name each other twice are a tree without end
 
-    def read(self) -> tuple[ObjFile, dict[str, MtlMaterial]]:
+    def read(self) -> tuple[ObjFile, dict[str, MeshMaterial]]:
         T = np.eye(4)
         unit = self.root.find("asset/unit")
         T[:3, :3] = UPRIGHT[(self.root.findtext("asset/up_axis") or "Y_UP").strip()]
@@ -209,3 +214,73 @@ def _transform(element: Any) -> Floats:
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         T[:3, :3] = np.eye(3) + s * cross + (1 - c) * cross @ cross
     return T
+
+
+def material(name: str, elements: Elements) -> MeshMaterial:
+    """Return the material of that id; what it does not say, or says wrong, is as in a material that says nothing."""
+    plain = MeshMaterial()
+    effect = _following(elements.get(name), "instance_effect", elements)
+    profile = effect.find("profile_COMMON") if effect is not None else None
+    shader = next((s for tag in SHADERS if profile is not None and (s := profile.find(f"technique/{tag}")) is not None), None)
+    if shader is None:
+        return plain
+    color = _color(shader.find("diffuse"))
+    texture = shader.find("diffuse/texture")
+    path = _image(texture.get("texture", ""), profile, elements) if texture is not None else ""
+    roughness = roughness_of(_number(shader.findtext("shininess/float"), 50.0))
+    return MeshMaterial(linear(color[:3]) if color else plain.color, _opacity(shader), roughness, map=path)
+
+
+def _following(element: Any, tag: str, elements: Elements) -> Any:
+    """Return what the first `tag` in an element names by its url, or None."""
+    reference = element.find(tag) if element is not None else None
+    return None if reference is None else elements.get(reference.get("url", "").removeprefix("#"))
+
+
+def _image(sampler: str, profile: Any, elements: Elements) -> str:
+    """Return the path of a texture, "" where it leads nowhere.
+
+    COLLADA 1.4: sampler2D/source names a surface, its init_from an image; 1.5: sampler2D/instance_image. Some files name
+    the image at once.
+    """
+    params = {p.get("sid"): p for p in profile.iter("newparam")}
+    name = sampler
+    for tag in ("sampler2D/source", "surface/init_from"):
+        text = params[name].findtext(tag) if name in params else None
+        name = text.strip() if text else name
+    image = _following(params[name].find("sampler2D"), "instance_image", elements) if name in params else elements.get(name)
+    if image is None or image.tag != "image":
+        return ""
+    path = image.findtext("init_from/ref") or image.findtext("init_from") or ""
+    return unquote(path.strip())
+
+
+def _opacity(shader: Any) -> float:
+    """Return the opacity: COLLADA's default, A_ONE, multiplies the colour's alpha; RGB_ZERO is transparent where it is white."""
+    transparent = shader.find("transparent")
+    amount = _number(shader.findtext("transparency/float"), 1.0)
+    color = _color(transparent) if transparent is not None else None
+    if color is None:
+        return 1.0
+    if transparent.get("opaque", "A_ONE") == "RGB_ZERO":
+        return min(max(1.0 - amount * sum(color[:3]) / 3, 0.0), 1.0)
+    # Exporters that mean opaque write alpha 0 or amount 0 as often as 1: nothing is made of glass that cannot be seen.
+    return min(amount * color[3], 1.0) if amount * color[3] > 0 else 1.0
+
+
+def _color(element: Any) -> tuple[float, float, float, float] | None:
+    """Return the colour (r, g, b, a) in an element, each within [0, 1], or None."""
+    words = (element.findtext("color") or "").split() if element is not None else []
+    values = [_number(word, math.nan) for word in words]
+    if len(values) not in {3, 4} or not all(map(math.isfinite, values)):
+        return None
+    r, g, b, a = (min(max(v, 0.0), 1.0) for v in (*values, 1.0)[:4])
+    return r, g, b, a
+
+
+def _number(text: str | None, otherwise: float) -> float:
+    try:
+        value = float(text or "")
+    except ValueError:
+        return otherwise
+    return value if math.isfinite(value) else otherwise

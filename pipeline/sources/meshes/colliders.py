@@ -14,9 +14,8 @@ from pipeline.sources.meshes.cutting import cut
 from pipeline.sources.meshes.inertials import Inertial
 from pipeline.sources.meshes.merging import merge_pieces
 from pipeline.sources.meshes.mesh_solids import Part, convex_part, mass_properties, parts_with_meshes
-from pipeline.sources.meshes.near_boxes import simplify_to_box
+from pipeline.sources.meshes.near_boxes import simplify_to_box, with_few_sides
 from pipeline.sources.meshes.recesses import stand_midway
-from pipeline.sources.meshes.sides import with_few_sides
 from pipeline.sources.meshes.touching import TOUCHED, TouchTolerances, simplify_pieces
 from pipeline.sources.settings import ModelLimits
 

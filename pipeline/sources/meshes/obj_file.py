@@ -4,15 +4,18 @@ Handled: triangles, quads and larger polygons (fanned), indices of every form (v
 doubled blanks, indents, comments, colours behind vertices, groups and materials. Left out: normals, curves, lines and points.
 """
 
+import math
 import re
+from array import array
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from pipeline.arrays import Floats, Ints
 from pipeline.sources.reasons import SourceError
 
+Color = tuple[float, float, float]
 BOM = b"\xef\xbb\xbf"
 MAX_OBJ = 64 << 20  # bytes
 MAX_MTL = 4 << 20
@@ -45,16 +48,30 @@ class ObjFile:
     library: str
 
 
-@dataclass(frozen=True, slots=True)
-class MtlMaterial:
-    """What we use of an MTL entry: diffuse colour, opacity, shininess (Ns), metalness (Pm) and the diffuse map's path as written."""
+def linear(color: Sequence[float]) -> Color:
+    """Return an sRGB colour in linear light (IEC 61966-2-1)."""
+    r, g, b = (round(v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4, 5) for v in color)
+    return r, g, b
 
-    name: str
-    diffuse: tuple[float, float, float] = (0.8, 0.8, 0.8)
+
+def roughness_of(shininess: float) -> float:
+    """Blinn-Phong exponent to roughness: alpha = sqrt(2 / (n + 2)), roughness its square root, within [0.2, 1]."""
+    return round(min(1.0, max(0.2, math.sqrt(math.sqrt(2 / (max(shininess, 0.0) + 2))))), 3)
+
+
+GREY, SATIN = linear((0.8, 0.8, 0.8)), roughness_of(50.0)  # of what says nothing
+
+
+@dataclass(frozen=True, slots=True)
+class MeshMaterial:
+    """What we use of a file's material: linear colour, opacity, roughness, metalness, and the colour's image: its path as written, or its bytes."""
+
+    color: Color = GREY
     opacity: float = 1.0
-    shininess: float = 50.0
+    roughness: float = SATIN
     metallic: float = 0.0
     map: str = ""
+    image: bytes = b""
 
 
 def parse_obj(data: bytes, where: str) -> ObjFile:
@@ -64,47 +81,68 @@ def parse_obj(data: bytes, where: str) -> ObjFile:
         raise SourceError("not_obj", where, "is empty")
     if b"\x00" in data[:4096] or data[:2] == b"\x1f\x8b" or data.lstrip()[:1] == b"<":
         raise SourceError("not_obj", where, "is no text of an OBJ file")
-    counts = data.count(b"\nv "), data.count(b"\nf "), data.count(b"\nvt")
-    if counts[0] > MAX_VERTICES or counts[1] > MAX_FACES or counts[2] > MAX_UVS:
-        raise SourceError("too_large", where, f"has {counts[0]} vertices, {counts[1]} faces and {counts[2]} uvs")
-    v_lines, vt_lines, blocks, library = _sorted_lines(data, where)
-    if len(v_lines) > MAX_VERTICES or len(vt_lines) > MAX_UVS or len(blocks) > MAX_GROUPS:
-        raise SourceError("too_large", where, f"{len(v_lines)} vertices and {len(vt_lines)} uvs in {len(blocks)} groups")
+    v_lines, vt_lines, blocks, library = _read_lines(_plain(data), where)
     vertices = _numbers(v_lines, 3, where)
     uvs = _numbers(vt_lines, 2, where) if vt_lines else np.zeros((0, 2))
     if len(vertices) and np.abs(vertices).max() > MAX_COORDINATE:
         raise SourceError("bad_number", where, "has coordinates beyond 100,000")
-    groups = tuple(_group(key, lines, len(vertices), len(uvs), where) for key, lines in blocks.items())
+    groups = tuple(_group(*key, block, len(vertices), len(uvs), where) for key, block in blocks.items())
     if not sum(len(g.faces) for g in groups):
         raise SourceError("not_obj", where, "has no faces")
     return ObjFile(vertices, uvs, groups, library)
 
 
-def _sorted_lines(data: bytes, where: str) -> tuple[list[bytes], list[bytes], dict[tuple[str, str], list[bytes]], str]:
-    """Return the lines of vertices, of uvs, of faces by (group, material), and the mtllib's name."""
-    data = _plain(data)
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """The faces of a group and material as read: how many corners each has, and vertex and uv of every corner, one after the other."""
+
+    sizes: "array[int]" = field(default_factory=lambda: array("q"))
+    corners: "array[int]" = field(default_factory=lambda: array("q"))
+
+
+def _read_lines(data: bytes, where: str) -> tuple[list[bytes], list[bytes], dict[tuple[str, str], _Block], str]:
+    """Return the lines of vertices, of uvs, the faces by (group, material), and the mtllib's name. Raises SourceError `too_large` beyond the limits."""
     v_lines: list[bytes] = []
     vt_lines: list[bytes] = []
-    blocks: dict[tuple[str, str], list[bytes]] = {}
+    blocks: dict[tuple[str, str], _Block] = {}
     group, material, library = "", "", ""
-    current: list[bytes] | None = None
+    faces = 0
     for line in data.split(b"\n"):
         head = line[:2]
         if head == b"v ":
             v_lines.append(line)
         elif head == b"f ":
-            if current is None:
-                current = blocks.setdefault((group, material), [])
-            current.append(_absolute(line, len(v_lines), len(vt_lines), where) if b"-" in line else line)
+            faces += 1
+            block = blocks.setdefault((group, material), _Block())
+            words = line.split()[1:]
+            block.sizes.append(len(words))
+            try:
+                for word in words:
+                    block.corners.extend(_corner(word, len(v_lines), len(vt_lines)))
+            except (ValueError, OverflowError) as error:
+                raise SourceError("not_obj", where, "has a face index that is no number") from error
+            if len(block.corners) > 2 * MAX_CORNERS:
+                raise SourceError("too_large", where, f"more than {MAX_CORNERS} face corners in one group")
         elif head == b"vt":
             vt_lines.append(line)
         elif head in {b"g ", b"o "}:
-            group, current = _name(line), None
+            group = _name(line)
         elif line.startswith(b"usemtl"):
-            material, current = _name(line), None
+            material = _name(line)
         elif line.startswith(b"mtllib"):
             library = _name(line)
+        if len(v_lines) > MAX_VERTICES or len(vt_lines) > MAX_UVS or faces > MAX_FACES or len(blocks) > MAX_GROUPS:
+            raise SourceError(
+                "too_large", where, f"more than {MAX_VERTICES} vertices, {MAX_UVS} uvs, {MAX_FACES} faces or {MAX_GROUPS} groups"
+            )
     return v_lines, vt_lines, blocks, library
+
+
+def _corner(word: bytes, vertices: int, uvs: int) -> tuple[int, int]:
+    """Return vertex and uv of a corner "v", "v/t", "v//n" or "v/t/n" from 0 on, -1 for none; negative ones count back from the last read so far."""
+    parts = word.replace(b"//", b"/0/").split(b"/")
+    v, t = int(parts[0]), int(parts[1]) if len(parts) > 1 else 0
+    return v - 1 if v > 0 else vertices + v if v else -1, t - 1 if t > 0 else uvs + t if t else -1
 
 
 def _plain(data: bytes) -> bytes:
@@ -115,12 +153,12 @@ def _plain(data: bytes) -> bytes:
     return re.sub(rb"(?m)^((?:v|vt|f) [^#\n]*)#.*", rb"\1", data) if b" #" in data else data
 
 
-def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
+def parse_mtl(data: bytes) -> dict[str, MeshMaterial]:
     """Parse an MTL file; a line that makes no sense is passed over, for a wrong colour is no reason to lose a model.
 
     Tf and Ke are ignored: 3D-FUTURE's are wrong.
     """
-    materials: dict[str, MtlMaterial] = {}
+    materials: dict[str, MeshMaterial] = {}
     name: str | None = None
     for raw in data.removeprefix(BOM).replace(b"\r", b"\n").split(b"\n", MAX_LINES)[:MAX_LINES]:
         words = raw.decode("utf-8", "replace").strip().split(None, 1)
@@ -131,21 +169,21 @@ def parse_mtl(data: bytes) -> dict[str, MtlMaterial]:
             if len(materials) >= MAX_MATERIALS:
                 break
             name = rest
-            materials.setdefault(name, MtlMaterial(name))
+            materials.setdefault(name, MeshMaterial())
         elif name is not None:
             materials[name] = _set(materials[name], key, rest)
     return materials
 
 
-def _set(entry: MtlMaterial, key: str, rest: str) -> MtlMaterial:
+def _set(entry: MeshMaterial, key: str, rest: str) -> MeshMaterial:
     if key == "map_Kd":  # without options like `-s 1 1 1` before the file's name, which may contain blanks
         return replace(entry, map=re.sub(r"^(-[a-zA-Z]+\s+((-?[\d.]+|on|off)\s+)*)+", "", rest).strip())
     values = _finite(rest.split()[: 3 if key == "Kd" else 1])
     shares = [min(max(v, 0.0), 1.0) for v in values]
     if key == "Kd" and len(shares) == 3:
-        return replace(entry, diffuse=(shares[0], shares[1], shares[2]))
+        return replace(entry, color=linear(shares))
     if key == "Ns" and values:
-        return replace(entry, shininess=values[0])
+        return replace(entry, roughness=roughness_of(values[0]))
     if key == "Pm" and shares:
         return replace(entry, metallic=shares[0])
     return replace(entry, opacity=shares[0] if key == "d" else 1 - shares[0]) if key in {"d", "Tr"} and shares else entry
@@ -178,59 +216,12 @@ def _numbers(lines: list[bytes], width: int, where: str) -> Floats:
     return values
 
 
-def _absolute(line: bytes, vertices: int, uvs: int, where: str) -> bytes:
-    """Turn the negative indices of a face into absolute ones: -1 is the last vertex read so far."""
-    corners = []
-    for word in line.split()[1:]:
-        parts = word.split(b"/")
-        try:
-            for k, count in ((0, vertices), (1, uvs)):
-                if k < len(parts) and parts[k][:1] == b"-":
-                    parts[k] = str(count + 1 + int(parts[k])).encode()
-        except ValueError as error:
-            raise SourceError("not_obj", where, f"has a face index {word[:20]!r}") from error
-        corners.append(b"/".join(parts[:2]).rstrip(b"/"))
-    return b"f " + b" ".join(corners)
-
-
-def _group(key: tuple[str, str], lines: list[bytes], vertices: int, uvs: int, where: str) -> ObjGroup:
-    words = [line.split()[1:] for line in lines]
-    counts = np.fromiter(map(len, words), np.int64, len(words))
-    flat = [word for corners in words for word in corners]
-    if len(flat) > MAX_CORNERS:
-        raise SourceError("too_large", where, f"{len(flat)} face corners in one group")
-    index = _indices(flat, where)
-    index = np.where(index > 0, index - 1, -1)
+def _group(name: str, material: str, block: _Block, vertices: int, uvs: int, where: str) -> ObjGroup:
+    index = np.array(block.corners, np.int64).reshape(-1, 2)
     if len(index) and (index[:, 0].min() < 0 or index[:, 0].max() >= vertices or index[:, 1].max() >= uvs):
-        raise SourceError("not_obj", where, f"a face of {key[0] or 'the first group'!r} indexes vertices that are not there")
-    corners = fans(counts)
-    triangles = index[corners]
-    return ObjGroup(key[0], key[1], triangles[:, :, 0], triangles[:, :, 1])
-
-
-def _indices(flat: list[bytes], where: str) -> Ints:
-    """Return (N, 2) vertex and uv indices, 1-based, 0 where there is no uv."""
-    joined = b" ".join(flat)
-    n, slashes, doubled = len(flat), joined.count(b"/"), joined.count(b"//")
-    try:
-        if slashes == 0:
-            width, text = 1, joined
-        elif slashes == n and doubled == 0:
-            width, text = 2, joined.replace(b"/", b" ")
-        elif slashes == 2 * n and doubled == n:
-            width, text = 1, re.sub(rb"//-?\d+", b"", joined)
-        elif slashes == 2 * n and doubled == 0:
-            width, text = 3, joined.replace(b"/", b" ")
-        else:  # mixed forms in one group
-            pairs = [(*w.split(b"/"), b"")[:2] for w in flat]
-            return np.array([[int(a), int(b or b"0")] for a, b in pairs], np.int64).reshape(-1, 2)
-        numbers = np.array(text.split(), dtype=np.bytes_).astype(np.int64).reshape(-1, width)
-    except (ValueError, OverflowError) as error:
-        raise SourceError("not_obj", where, "has a face index that is no number") from error
-    if len(numbers) != n:
-        raise SourceError("not_obj", where, "has a malformed face")
-    uv = numbers[:, 1] if width >= 2 else np.zeros(n, np.int64)
-    return np.stack([numbers[:, 0], uv], axis=1)
+        raise SourceError("not_obj", where, f"a face of {name or 'the first group'!r} indexes vertices that are not there")
+    triangles = index[fans(np.array(block.sizes, np.int64))]
+    return ObjGroup(name, material, triangles[:, :, 0], np.maximum(triangles[:, :, 1], -1))
 
 
 def fans(counts: Ints) -> Ints:

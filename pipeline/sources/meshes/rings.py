@@ -5,14 +5,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from pipeline.arrays import Floats
-from pipeline.sources.meshes.mesh_solids import Part, convex_part
+from pipeline.sources.meshes.mesh_solids import Part
 
 STAVES = 6  # pieces that are taken for a ring
 FEWEST, MOST = 3, 12  # sectors of a vessel
 WITHIN = 1.05  # share of a ring's radius beyond which a piece is a handle
 TURNS = 4  # staves of the first sector that it is begun at
 LEVEL = 0.005  # [m] between heights that are one
-THIN = 0.012  # [m] a floor is at most, of which each sector takes its slice
 
 
 def same_height(pieces: Sequence[Part]) -> list[list[int]]:
@@ -39,33 +38,6 @@ def sectors(pieces: Sequence[Part], passes: Callable[[list[int]], bool]) -> list
     return columns or [
         group for ring in rings for group in _fewest(_staves(pieces, ring, *_circle(pieces, ring)), passes) if len(group) > 1
     ]
-
-
-def with_floor(pieces: Sequence[Part]) -> tuple[Sequence[Part], Floats]:
-    """Return the sectors of a round vessel, each with the slice of its floor that it stands on, without the floor, and its middle (2,).
-
-    What is no such thing stays as it is.
-    """
-    floor = min(pieces, key=lambda p: float(p.hull[:, 2].max()))
-    sectors, bottom, top = [p for p in pieces if p is not floor], *(f(floor.hull[:, 2]) for f in (np.min, np.max))
-    middle = (floor.hull[:, :2].min(axis=0) + floor.hull[:, :2].max(axis=0)) / 2
-    stand = [abs(p.hull[:, 2].min() - top) < LEVEL / 5 for p in sectors]
-    if len(sectors) < FEWEST or top - bottom > THIN or not _holds(floor.hull[:, :2] - middle) or not all(stand):
-        return pieces, middle
-    sliced, covered = [], np.zeros(len(floor.hull), bool)
-    for sector in sectors:
-        away = sector.hull[:, :2].mean(axis=0) - middle
-        facing = np.arctan2(away[1], away[0])
-        turns = [
-            (np.arctan2(*(points - middle).T[::-1]) - facing + np.pi) % (2 * np.pi) - np.pi
-            for points in (sector.hull[:, :2], floor.hull[:, :2])
-        ]
-        within = (turns[1] >= turns[0].min() - 0.02) & (turns[1] <= turns[0].max() + 0.02)
-        covered |= within
-        axis = np.array([[*middle, z] for z in (bottom, top)])
-        part = convex_part(np.concatenate([sector.hull, floor.hull[within], axis]), sector.volume + floor.volume / len(sectors))
-        sliced.append(part or sector)
-    return (sliced if covered.all() else pieces), middle
 
 
 def _circle(pieces: Sequence[Part], among: Sequence[int]) -> tuple[Floats, float]:

@@ -6,30 +6,20 @@ and fans, which axis is up and the unit, and opens textures itself, wherever the
 """
 
 import io
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from pipeline.arrays import Floats
-from pipeline.sources.meshes.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_VERTICES, ObjFile, ObjGroup
-from pipeline.sources.meshes.textures import MAX_PIXELS
+from pipeline.sources.meshes.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_VERTICES, MeshMaterial, ObjFile, ObjGroup
+from pipeline.sources.meshes.visual_meshes import MAX_PIXELS
 from pipeline.sources.reasons import SourceError
 
 MAX_SCENE = 64 << 20  # bytes
 COMPRESSED = (b"KHR_draco_mesh_compression", b"EXT_meshopt_compression")
 
 
-@dataclass(frozen=True, slots=True)
-class SceneMaterial:
-    """Linear base colour (4,), roughness, and the base colour's image as PNG or b"" without one."""
-
-    color: tuple[float, float, float, float]
-    roughness: float
-    image: bytes
-
-
-def parse_scene(data: bytes, suffix: str, where: str) -> tuple[ObjFile, dict[str, SceneMaterial]]:
+def parse_scene(data: bytes, suffix: str, where: str) -> tuple[ObjFile, dict[str, MeshMaterial]]:
     """Return the triangles of a "glb" or "stl" file, a group per mesh that its scene shows, and its materials by name.
 
     Raises SourceError `not_obj`, `bad_number` or `too_large`, naming `where`.
@@ -50,12 +40,12 @@ def parse_scene(data: bytes, suffix: str, where: str) -> tuple[ObjFile, dict[str
         raise SourceError("not_obj", where, f"cannot be read ({type(error).__name__}: {str(error)[:60]})") from error
 
 
-def _merge_meshes(shown: list[tuple[Floats, Any]], where: str) -> tuple[ObjFile, dict[str, SceneMaterial]]:
+def _merge_meshes(shown: list[tuple[Floats, Any]], where: str) -> tuple[ObjFile, dict[str, MeshMaterial]]:
     """Return meshes (T (4, 4), trimesh) as one file; a mirrored one has its faces turned."""
     if len(shown) > MAX_GROUPS:
         raise SourceError("too_large", where, f"shows {len(shown)} meshes")
     vertices, uvs, groups = [np.zeros((0, 3))], [np.zeros((0, 2))], []
-    materials: dict[str, SceneMaterial] = {}
+    materials: dict[str, MeshMaterial] = {}
     names: dict[int, str] = {}
     counts = np.zeros(3, np.int64)  # vertices, uvs, faces
     for T, mesh in shown:
@@ -84,13 +74,13 @@ def _merge_meshes(shown: list[tuple[Floats, Any]], where: str) -> tuple[ObjFile,
     return ObjFile(np.concatenate(vertices), np.concatenate(uvs), tuple(groups), ""), materials
 
 
-def _material(material: Any) -> SceneMaterial:
+def _material(material: Any) -> MeshMaterial:
     color = np.ones(4) if material.baseColorFactor is None else np.asarray(material.baseColorFactor, np.float64) / 255
     r, g, b, a = np.clip(np.nan_to_num(color, nan=0.8), 0, 1).tolist()
     rough = 1.0 if material.roughnessFactor is None else float(material.roughnessFactor)
+    rough = round(min(max(rough, 0.2), 1.0), 3) if np.isfinite(rough) else 0.6
     image, out = material.baseColorTexture, io.BytesIO()
     if image is not None and image.width * image.height <= MAX_PIXELS:
         image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG", optimize=False, compress_level=6)
-    return SceneMaterial(
-        (r, g, b, a if material.alphaMode == "BLEND" else 1.0), min(max(rough, 0.0), 1.0) if np.isfinite(rough) else 0.6, out.getvalue()
-    )
+    opacity = a if material.alphaMode == "BLEND" else 1.0
+    return MeshMaterial((round(r, 5), round(g, 5), round(b, 5)), opacity, rough, image=out.getvalue())

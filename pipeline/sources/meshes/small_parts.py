@@ -1,7 +1,6 @@
-"""What of furniture nobody feels piece by piece: feet of handles, rows of like things, what it stands on, bars that nothing is above.
+"""What of furniture nobody feels piece by piece: feet of handles, what it stands on, bars that nothing is above; what is soft.
 
-Feet hold the bar of a handle before its front: a hand takes hold of the bar and comes behind it. Between the things of a row, bottles on a rack or
-grates of a hob, no hand comes: a block each. So are legs and plinths close above the floor.
+Feet hold the bar of a handle before its front: a hand takes hold of the bar and comes behind it. Legs and plinths close above the floor are a block.
 """
 
 from collections.abc import Sequence
@@ -13,16 +12,16 @@ from shapely.geometry import MultiPoint
 from shapely.geometry.base import BaseGeometry
 
 from pipeline.arrays import Bools, Floats
-from pipeline.sources.meshes.mesh_solids import Part, combine_parts, distances_outside
+from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, convex_part, distances_outside, extremes
 
+CORNERS = 8  # of the outline on which a soft thing lies, and of a level top, at most
+SOLE = 0.8  # share of its outline that a soft thing lies on
+RISE = 0.12  # share of its height below which it has no other corners: PhysX tilts what all but lies on a rounded edge
 FOOT = (0.045, 0.018)  # [m] a foot is no longer, no wider
 MEET = 0.001  # [m] between pieces that meet
 APART = 0.016  # [m] from what it stands between no point of it is further
 SLIGHT = 3  # times as long are both of those
-GAP = (0.002, 0.045)  # [m] between neighbours of a row: what touches is of one thing, a basin of four quarters
-LIKE = 0.005  # [m] within which sizes and places are one
 UNDER = 0.2  # [m] above the floor below which furniture's legs and plinths are one block: no hand comes there
-LOW, LEG = 0.55, 0.12  # [m] and under a table too low for a seat to be drawn up to it; how wide a leg of that is at most, or a stretcher
 BAR = 0.03  # [m] how wide a bar is at most
 SEAM = 0.005  # [m] between heights that are one
 BESIDE = 0.02  # [m] how far a block may come out from under what one sees
@@ -42,35 +41,6 @@ def without_feet(pieces: Sequence[Part]) -> list[Part]:
         if len(ends) > 1 and np.min([distances_outside(edges, planes[i]) for i in ends], axis=0).max() <= APART:
             feet.add(k)
     return [p for k, p in enumerate(pieces) if k not in feet]
-
-
-def rows_as_blocks(pieces: Sequence[Part]) -> list[Part]:
-    """Return convex pieces [m] with rows of like ones as one: along x, then along y, so that a grid is one block as well."""
-    for along in (0, 1):
-        pieces = [combine_parts(row) if len(row) > 1 else row[0] for row in _rows(pieces, along)]
-    return list(pieces)
-
-
-def _rows(pieces: Sequence[Part], along: int) -> list[list[Part]]:
-    """Return the pieces in rows along an axis, each of one piece at least."""
-    across = 1 - along
-    rows: list[list[Part]] = []
-    last: list[tuple[Floats, Floats]] = []  # box of the last of each row
-    for piece in sorted(pieces, key=lambda p: round(float(p.hull[:, along].min()), 6)):
-        low, high = piece.hull.min(axis=0), piece.hull.max(axis=0)
-        width = high[along] - low[along]
-        for k, (low0, high0) in enumerate(last):
-            gap = low[along] - high0[along]
-            beside = np.abs(np.stack([low - low0, high - high0])[:, [across, 2]]).max() < LIKE
-            close = GAP[0] < gap <= min(GAP[1], width)  # two thin boards hold something between them
-            if beside and close and abs(width - (high0 - low0)[along]) < LIKE:
-                rows[k].append(piece)
-                last[k] = low, high
-                break
-        else:
-            rows.append([piece])
-            last.append((low, high))
-    return rows
 
 
 def blocks_under(pieces: Sequence[Part], top: float) -> list[Part]:
@@ -95,20 +65,33 @@ def _hides_no_floor(plans: Sequence[BaseGeometry], seen: BaseGeometry) -> bool:
     return bool(seen.covers(shapely.union_all(plans).convex_hull))
 
 
-def legs_under(pieces: Sequence[Part], low: float, most: float) -> list[Part]:
-    """Return what is under the lowest thing wider than LEG that ends above UNDER, where that is no higher than LOW and no leg than `most` [m]."""
-    tops, bottoms = np.array([[p.hull[:, 2].max(), p.hull[:, 2].min()] for p in pieces]).T - low
-    wide = np.array([np.sort(np.ptp(p.hull, axis=0))[1] > LEG for p in pieces])  # a board, whichever way it stands
-    deck = float(bottoms[wide & (tops > UNDER)].min(initial=np.inf))
-    legs = tops <= deck + SEAM
-    if deck > LOW or not UNDER < tops[legs].max(initial=0.0) <= most + SEAM:
-        return []
-    return [p for p, is_leg in zip(pieces, legs, strict=True) if is_leg]
-
-
 def narrow_bars(boxes: Floats) -> Bools:
     """Return which of pieces, by their boxes (P, 2, 3), are narrow and have no other above them."""
     over = (boxes[:, None, 0, 2] >= boxes[None, :, 1, 2] - SEAM) & (boxes[:, None, 0] < boxes[None, :, 1])[:, :, :2].all(axis=2)
     over &= (boxes[:, None, 1] > boxes[None, :, 0])[:, :, :2].all(axis=2)
     np.fill_diagonal(over, val=False)
     return np.asarray((np.ptp(boxes[:, :, :2], axis=1).min(axis=1) <= BAR) & ~over.any(axis=0))
+
+
+def level_top(part: Part, lift: float) -> Part:
+    """Return a cushion with a level top: what lies on a swell rolls, where a real one gives way."""
+    top = float(part.hull[:, 2].max())
+    upper = _outline(part.hull[part.hull[:, 2] > top - lift])
+    level = np.column_stack([upper[:, :2], np.full(len(upper), top)])  # all of its corners stay, however many the sides have
+    return convex_part(np.concatenate([extremes(part.hull, MAX_HULL - len(level)), level]), part.volume) or part
+
+
+def _outline(points: Floats) -> Floats:
+    """Return those of points (N, 3) that are farthest out, seen from above, at most CORNERS."""
+    turns = 2 * np.pi * np.arange(CORNERS) / CORNERS
+    return np.asarray(points[np.unique(np.argmax(points[:, :2] @ [np.cos(turns), np.sin(turns)], axis=0))])
+
+
+def lie_flat(part: Part) -> Part:
+    """Return a soft thing as it lies: its outline, drawn in a little, on what bears it."""
+    around = _outline(part.hull)
+    middle = (part.hull.min(axis=0) + part.hull.max(axis=0)) / 2
+    low, high = part.hull[:, 2].min(), part.hull[:, 2].max()
+    sole = np.column_stack([middle[:2] + SOLE * (around[:, :2] - middle[:2]), np.full(len(around), low)])
+    above = part.hull[part.hull[:, 2] > low + RISE * (high - low)]
+    return convex_part(np.concatenate([extremes(above, MAX_HULL - len(sole)), sole]), part.volume) or part

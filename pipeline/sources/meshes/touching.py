@@ -18,9 +18,15 @@ from pipeline.geometry.compiled import compiled
 from pipeline.sources.meshes.mesh_solids import MAX_HULL, Part, combine_parts, extremes, qhull_of
 from pipeline.sources.meshes.near_boxes import NEAR
 from pipeline.sources.meshes.reach import make_reach_test
-from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors, with_floor
-from pipeline.sources.meshes.small_parts import LOW, UNDER, blocks_under, legs_under, narrow_bars, rows_as_blocks, without_feet
-from pipeline.sources.meshes.soft_shapes import level_top, lie_flat
+from pipeline.sources.meshes.rings import STAVES, is_ring, same_height, sectors
+from pipeline.sources.meshes.small_parts import (
+    UNDER,
+    blocks_under,
+    level_top,
+    lie_flat,
+    narrow_bars,
+    without_feet,
+)
 
 Allowed = Callable[[Floats, Floats], Floats]  # points (P, 3), normals (P, 3) there -> how far each may be off (P,) [m]
 
@@ -46,7 +52,6 @@ SEAT = 0.4  # [m] above the floor below which legs are one block under a seat or
 SAG = 0.05  # [m] under a bar which nothing is above, where nothing is felt: the hollow of a tap's arch
 CUSHIONED = frozenset(("bed", "chair", "sofa", "stool"))  # super-categories on which one sits and lies: what things lie on there gives way
 REACH = 0.05  # [m] between pieces that may become one across what lies between them: shelves on both sides of a board
-SEAM = 2e-3  # [m] from the axis of a bowl at which a face is of two sectors that meet
 POT = 0.4  # share of a plant's height up to which it is as hard as other things
 Offer = tuple[float, tuple[int, ...]]  # how much changes, who becomes one
 
@@ -58,7 +63,7 @@ class TouchTolerances:
     What is `closed` is not reached into: the staves of a ring are one disc. Lower than `under` [m] only what faces upwards is felt, higher than `over` nothing.
     A `vessel` is felt from without; within it is but hollow. What is `soft` lies flat. What nobody touches is one piece, `whole`.
     Things lie on what faces upwards by `level`; what is less than `lift` [m] below the top of a piece is drawn up to it. Boxes may stand out by `box` [m] at their corners.
-    Nothing comes through gaps narrower than `cell` [m]; see `make_reach_test`. Less than `sag` [m] under a bar nothing is felt. What stands on legs no higher than `legs` [m] stands on a block.
+    Nothing comes through gaps narrower than `cell` [m]; see `make_reach_test`. Less than `sag` [m] under a bar nothing is felt.
     """
 
     up: float = TOUCHED
@@ -76,7 +81,6 @@ class TouchTolerances:
     box: float = NEAR
     cell: float = 0.01
     sag: float = 0.0
-    legs: float = 0.0
 
 
 FELT = MappingProxyType(  # by what cards say
@@ -107,7 +111,7 @@ def touch_tolerances(category: Category, *, opens: bool) -> TouchTolerances:
         under = SEAT if category.tuck == "seat" or category.super == "bed" else UNDER
         return TouchTolerances(GIVES, BETWEEN, LEFT_ALONE, under=under, box=PADDED, cell=BUMPED, level=LEVEL, lift=PADDED)
     over = OVER if category.mount == "floor" else ANY
-    return TouchTolerances(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED, legs=LOW)
+    return TouchTolerances(TOUCHED, BUMPED, LEFT_ALONE, under=UNDER, over=over, box=PADDED, cell=BUMPED)
 
 
 def simplify_pieces(pieces: Sequence[Part], how: TouchTolerances) -> tuple[Part, ...]:
@@ -118,8 +122,6 @@ def simplify_pieces(pieces: Sequence[Part], how: TouchTolerances) -> tuple[Part,
         return (combine_parts(pieces),)
     points = np.concatenate([p.hull for p in pieces])
     low = float(points[:, 2].min())
-    legs = legs_under(pieces, low, how.legs)
-    pieces = [p for p in pieces if all(p is not leg for leg in legs)]
     pieces = blocks_under(pieces, low + how.under)
     if how.soft:
         pieces = [lie_flat(combine_parts(pieces))]
@@ -128,27 +130,9 @@ def simplify_pieces(pieces: Sequence[Part], how: TouchTolerances) -> tuple[Part,
         pieces = [disc for level in levels for disc in (level if len(level) < STAVES else [combine_parts(level)])]
     if how.sides <= TOUCHED:
         pieces = without_feet(pieces)
-    elif how.up <= TOUCHED:
-        pieces = rows_as_blocks(pieces)
     allowed = _tolerance(pieces, how)
     fewer_pieces = drop_unfelt(merge_by_touch(pieces, allowed, max(how.up, how.sides, REACH), rings=how.up < SOFT, sag=how.sag), allowed)
-    if how.vessel:
-        fewer_pieces = _with_floors(fewer_pieces, pieces, allowed)
-    if legs:
-        fewer_pieces = (*fewer_pieces, combine_parts(legs))
     return tuple(level_top(p, how.lift) for p in fewer_pieces) if how.lift else fewer_pieces
-
-
-def _with_floors(pieces: Sequence[Part], original: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:
-    """Return the sectors of a bowl, each with its slice of the floor that they stand around, in place of sectors and floor; see `merge_by_touch` for `allowed`."""
-    sliced, middle = with_floor(pieces)
-    planes = [_planes(p.hull) for p in original]
-
-    def between(at: Floats, normals: Floats) -> Floats:
-        cut = (np.abs(((at[:, :2] - middle) * normals[:, :2]).sum(axis=1)) < SEAM) & (np.abs(normals[:, 2]) < UP)  # where sectors meet
-        return np.where(cut, ANY, allowed(at, normals))
-
-    return tuple(sliced) if all(_deviation(p.hull, planes, between) is not None for p in sliced) else tuple(pieces)
 
 
 def drop_unfelt(pieces: Sequence[Part], allowed: Allowed) -> tuple[Part, ...]:

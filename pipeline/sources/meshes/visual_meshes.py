@@ -1,19 +1,21 @@
 """OBJ groups as visual meshes of an asset, with their materials and textures."""
 
-import math
+import io
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
+from PIL import Image, UnidentifiedImageError
 
 from pipeline.arrays import Floats
 from pipeline.entities.asset import Material, Mesh
 from pipeline.sources.guarded import DRIVE, Folder
-from pipeline.sources.meshes.obj_file import MAX_MTL, MtlMaterial, ObjFile, ObjGroup, parse_mtl
-from pipeline.sources.meshes.textures import MAX_FILE, prepare_texture
+from pipeline.sources.meshes.obj_file import MAX_MTL, MeshMaterial, ObjFile, ObjGroup, parse_mtl
 from pipeline.sources.reasons import SourceError
 
+MAX_FILE = 32 << 20  # bytes
+MAX_PIXELS = 4096 * 4096
 T = TypeVar("T")
 
 
@@ -26,41 +28,25 @@ class Palette:
     materials: list[Material] = field(default_factory=list)
     textures: dict[str, bytes] = field(default_factory=dict)
     notes: list[tuple[str, str]] = field(default_factory=list)
-    _libraries: dict[str, dict[str, MtlMaterial]] = field(default_factory=dict)
+    _libraries: dict[str, dict[str, MeshMaterial]] = field(default_factory=dict)
     _images: dict[str, str | None] = field(default_factory=dict)
     _index: dict[Material, int] = field(default_factory=dict)
 
-    def index(self, library: str, base: str, name: str) -> int:
+    def named(self, library: str, base: str, name: str) -> int:
         """Return the index of the material `name` of the MTL file `library` (relative to the folder `base`)."""
-        return self.entry(self._library(library, base).get(name) or MtlMaterial(name or "plain"), base)
+        return self.index(self._library(library, base).get(name, MeshMaterial()), base)
 
-    def entry(self, entry: MtlMaterial, base: str) -> int:
-        """Return the index of a material whose texture's path is relative to the folder `base`."""
-        texture = self.image(entry.map, base) if entry.map else None
-        color = (1.0, 1.0, 1.0) if texture else entry.diffuse
-        return self.add(color, entry.opacity, texture, _roughness(entry.shininess), entry.metallic)
-
-    def add(
-        self, color: tuple[float, float, float], opacity: float, texture: str | None, roughness: float = 0.6, metallic: float = 0.0
-    ) -> int:
-        """Return the index of a material of sRGB `color`, made when it is new."""
-        linear = (_linear(color[0]), _linear(color[1]), _linear(color[2]))
-        return self._material_index(linear, opacity, texture, roughness, metallic)
-
-    def _material_index(
-        self, linear: tuple[float, float, float], opacity: float, texture: str | None, roughness: float, metallic: float = 0.0
-    ) -> int:
-        plain = Material("", linear, roughness, metallic, round(max(opacity, 0.05), 4), texture)
+    def index(self, material: MeshMaterial, base: str, where: str = "") -> int:
+        """Return the index of a material, made when it is new: its image's path is relative to the folder `base`, an image that it brings is of `where`."""
+        texture = self.image(material.map, base) if material.map else None
+        if material.image:
+            texture = self._noted(where, lambda: self._texture(material.image, where))
+        color = (1.0, 1.0, 1.0) if texture else material.color
+        plain = Material("", color, material.roughness, material.metallic, round(max(material.opacity, 0.05), 4), texture)
         if plain not in self._index:
             self._index[plain] = len(self.materials)
-            self.materials.append(Material(f"material_{len(self.materials)}", linear, roughness, metallic, plain.opacity, texture))
+            self.materials.append(replace(plain, name=f"material_{len(self.materials)}"))
         return self._index[plain]
-
-    def own(self, color: tuple[float, float, float, float], roughness: float, image: bytes, where: str) -> int:
-        """Return the index of a material that a mesh file brings along: linear `color` with opacity, the bytes of an image or none."""
-        texture = self._noted(where, lambda: self._texture(image, where)) if image else None
-        r, g, b = (1.0, 1.0, 1.0) if texture else color[:3]
-        return self._material_index((round(r, 5), round(g, 5), round(b, 5)), color[3], texture, round(max(roughness, 0.2), 3))
 
     def image(self, path: str, base: str) -> str | None:
         """Return the name under which the image is kept, or None with a note where it cannot be had.
@@ -93,7 +79,7 @@ class Palette:
         self.textures[name] = data
         return name
 
-    def _library(self, library: str, base: str) -> dict[str, MtlMaterial]:
+    def _library(self, library: str, base: str) -> dict[str, MeshMaterial]:
         library = _without_drive(library)
         key = f"{base}/{library}"
         if key not in self._libraries:
@@ -125,11 +111,26 @@ def visual_mesh(group: ObjGroup, file: ObjFile, points: Floats, name: str, mater
     return Mesh(name, vertices, corners, material, uv, part)
 
 
-def _linear(value: float) -> float:
-    """SRGB to linear (IEC 61966-2-1)."""
-    return round(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4, 5)
+def prepare_texture(data: bytes, where: str, limit: int) -> tuple[bytes, str]:
+    """Return (bytes, suffix) of an image of at most `limit` pixels a side.
 
-
-def _roughness(shininess: float) -> float:
-    """Blinn-Phong exponent to roughness: alpha = sqrt(2 / (n + 2)), roughness its square root, within [0.2, 1]."""
-    return round(min(1.0, max(0.2, math.sqrt(math.sqrt(2 / (max(shininess, 0.0) + 2))))), 3)
+    A small PNG or JPEG stays as it is; anything else is re-encoded as PNG with fixed settings, so the bytes depend on
+    the image alone. Raises SourceError `missing_texture` for what is no such image.
+    """
+    try:
+        with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as image:
+            if image.width * image.height > MAX_PIXELS:
+                raise SourceError("missing_texture", where, f"{image.width} x {image.height} pixels")
+            if max(image.size) <= limit:
+                suffix = "png" if image.format == "PNG" else "jpg"
+                image.load()  # a truncated image fails here, not in a viewer
+                return data, suffix
+            mode = "RGBA" if "A" in image.getbands() or "transparency" in image.info else "RGB"
+            small = image.convert(mode)
+            small.thumbnail((limit, limit), Image.Resampling.LANCZOS)
+            out = io.BytesIO()
+            small.save(out, "PNG", optimize=False, compress_level=6)
+            return out.getvalue(), "png"
+    except (UnidentifiedImageError, OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        told = str(error).split(" <")[0]  # without the buffer's address, which is another in every run
+        raise SourceError("missing_texture", where, f"is no readable PNG or JPEG ({told[:60]})") from error

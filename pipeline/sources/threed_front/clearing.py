@@ -14,9 +14,8 @@ import shapely
 from shapely.geometry import Polygon
 
 from pipeline.arrays import Bools, Floats
-from pipeline.sources.threed_front.furniture import Placed, shared_shape
+from pipeline.sources.threed_front.furniture import Placed, shared_shape, supports
 from pipeline.sources.threed_front.notches import fill_columns
-from pipeline.sources.threed_front.supports import supports
 from pipeline.taxonomy import Taxonomy
 
 SLACK = 0.004  # [m] what boxes may share: rounding of sources
@@ -93,7 +92,7 @@ def _room(pieces: Sequence[Placed], floor: Polygon, bearers: Sequence[int], taxo
     low, high = np.array([p.span for p in pieces]).reshape(-1, 2).T
     cards = [taxonomy.categories[p.category] for p in pieces]
     own = np.array([b < 0 and card.mount != "ceiling" and card.layout for b, card in zip(bearers, cards, strict=True)], bool)
-    tuck = np.array([{"seat": 1, "table": 2}.get(card.tuck or "", 0) for card in cards])
+    tuck = np.array([card.tuck_role for card in cards])
     level = np.minimum(high[:, None], high) - np.maximum(low[:, None], low) > FLAT
     rivals = own[:, None] & own & level & (tuck[:, None] + tuck != 3)
     np.fill_diagonal(rivals, val=False)

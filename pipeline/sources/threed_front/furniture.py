@@ -1,7 +1,7 @@
-"""Furniture of a 3D-FRONT room as placed boxes, each kept or left out with a reason."""
+"""Furniture of a 3D-FRONT room as placed boxes, each kept or left out with a reason; and what stands on or in what, for scene files say nothing of it."""
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +17,9 @@ from pipeline.sources.threed_front.notches import overlap_share
 from pipeline.sources.threed_front.poses import Box, Pose, place, yaw_and_tilt
 from pipeline.taxonomy import Taxonomy
 
+ON = 0.03  # [m] what starts within this height of another's top stands on it
+RAISED = 0.003  # [m] what starts no higher stands on the floor
+LEAST = 0.7  # share of a thing's footprint that must be over its support's
 STANDING, TALL = 0.1, 1.0  # [m] a lamp whose foot is lower and that is higher hangs from no ceiling
 BELOW = 0.05  # [m] under the floor: rounding of the source
 
@@ -169,7 +172,7 @@ def find_overlaps(objects: list[Placed], limits: FrontFilters, taxonomy: Taxonom
     kept: set[int] = set()
     for i in order:
         for j in filter(kept.__contains__, near[i]):
-            tucked = {taxonomy.categories[objects[k].category].tuck for k in (i, j)} == {"seat", "table"}
+            tucked = sum(taxonomy.categories[objects[k].category].tuck_role for k in (i, j)) == 3
             most = limits.max_overlap_tucked if tucked else limits.max_overlap
             share = round(shared_volume(objects[i], objects[j]), 2)
             share = round(shared_shape(objects[i], objects[j]), 2) if share > most else share
@@ -179,3 +182,36 @@ def find_overlaps(objects: list[Placed], limits: FrontFilters, taxonomy: Taxonom
         else:
             kept.add(i)
     return dropped
+
+
+def supports(objects: Sequence[Placed], taxonomy: Taxonomy) -> list[int]:
+    """Return for each object of a room the index of what it stands on or in, -1 for the floor, a wall, the ceiling.
+
+    A thing stands on the highest box whose top it starts at; else it is in the smallest box around its foot.
+    """
+    bearers = [-1] * len(objects)
+    shapes = np.array([o.footprint() for o in objects])
+    raised = [i for i, o in enumerate(objects) if o.span[0] > RAISED and taxonomy.categories[o.category].mount != "ceiling"]
+    if not raised:
+        return bearers
+    areas = shapely.area(shapes)
+    for i in raised:
+        z = objects[i].span[0]
+        over = shapely.area(shapely.intersection(shapes[i], shapes)) >= LEAST * areas[i]
+        below = [
+            j
+            for j in np.flatnonzero(over).tolist()
+            if j != i and objects[j].span[0] < z - RAISED / 2 and z <= objects[j].span[1] + ON and areas[j] > areas[i]
+        ]
+        on = [j for j in below if z >= objects[j].span[1] - ON]
+        if on:
+            bearers[i] = max(on, key=lambda j: objects[j].span[1])
+        elif below:
+            bearers[i] = min(below, key=lambda j: areas[j] * (objects[j].span[1] - objects[j].span[0]))
+    return bearers
+
+
+def hangs_in_air(piece: Placed, support: int, taxonomy: Taxonomy) -> bool:
+    """Whether a small thing hangs in the air: its support was left out."""
+    category = taxonomy.categories[piece.category]
+    return not category.layout and category.mount == "floor" and support < 0 and piece.span[0] > ON

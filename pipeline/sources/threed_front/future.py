@@ -89,7 +89,7 @@ def read_model(models: Folder, info: ModelInfo, limits: ModelLimits, licence: st
     visuals: list[Mesh] = []
     collisions: list[tuple[Floats, Ints]] = []
     for group in file.groups:
-        mesh = visual_mesh(group, file, points, f"mesh_{len(visuals):03d}", palette.index(file.library, "", group.material))
+        mesh = visual_mesh(group, file, points, f"mesh_{len(visuals):03d}", palette.named(file.library, "", group.material))
         if mesh:
             visuals.append(mesh)
             collisions.append((points, group.faces))

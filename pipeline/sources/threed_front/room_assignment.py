@@ -11,10 +11,9 @@ from pipeline.sources.reasons import Row, SourceError, reject
 from pipeline.sources.settings import FrontFilters
 from pipeline.sources.source import Task
 from pipeline.sources.threed_front.clearing import move_apart
-from pipeline.sources.threed_front.furniture import Placed, find_overlaps, place_furniture, share_inside
+from pipeline.sources.threed_front.furniture import Placed, find_overlaps, hangs_in_air, place_furniture, share_inside, supports
 from pipeline.sources.threed_front.house_file import HouseFile, RoomRecord
 from pipeline.sources.threed_front.house_rows import ReadRoom
-from pipeline.sources.threed_front.supports import hangs_in_air, supports
 
 MAX_OBJECTS = 500  # of one room
 HALF = 0.4  # share of a footprint in a room, from which on a piece is moved into it
