@@ -82,7 +82,7 @@ class SampleSettings:
     batch: int = 32  # rooms per padded batch
     quantity: bool = True  # draw exactly as many objects as are asked for
     articulation: Articulation = "joints"  # what counts as extended state: joints' sweeps, the paper's heuristic, or no guidance
-    articulation_scale: float = 1.0  # step along the descent of phi_articoll [m per m]
+    articulation_scale: float = 0.5  # step along the descent of phi_articoll [m per m]
     articulation_below: float = 10.0
     articulation_steps: int = 10  # descents at each of these levels
     turn_scale: float = 0.1  # step of the yaw, per step of the position
