@@ -114,8 +114,9 @@ def acoll(rng: np.random.Generator, objects: Iterable[Row], extension: Extension
     return {"rooms": bootstrap(rng, [float(np.mean(flags)) for flags in rooms]), "objects": rate(sum(hits), len(hits))}
 
 
-def swept(joints: Sequence[Row]) -> dict[str, Rate]:
+def swept(joints: Iterable[Row]) -> dict[str, Rate]:
     """Return the share of openable objects, of their joints, and of room doors that are blocked on their way."""
+    joints = list(joints)
     doors = [not j["clear"] for j in joints if j["part_class"] == "door_leaf"]
     return {**_joint_rates(joints, lambda joint: not joint["clear"]), "doors": rate(sum(doors), len(doors))}
 
