@@ -81,6 +81,9 @@ def parse_obj(data: bytes, where: str) -> ObjFile:
         raise SourceError("not_obj", where, "is empty")
     if b"\x00" in data[:4096] or data[:2] == b"\x1f\x8b" or data.lstrip()[:1] == b"<":
         raise SourceError("not_obj", where, "is no text of an OBJ file")
+    counts = data.count(b"\nv "), data.count(b"\nf "), data.count(b"\nvt")
+    if counts[0] > MAX_VERTICES or counts[1] > MAX_FACES or counts[2] > MAX_UVS:  # before lines without end take memory
+        raise SourceError("too_large", where, f"has {counts[0]} vertices, {counts[1]} faces and {counts[2]} uvs")
     v_lines, vt_lines, blocks, library = _read_lines(_plain(data), where)
     vertices = _numbers(v_lines, 3, where)
     uvs = _numbers(vt_lines, 2, where) if vt_lines else np.zeros((0, 2))
@@ -115,14 +118,14 @@ def _read_lines(data: bytes, where: str) -> tuple[list[bytes], list[bytes], dict
             faces += 1
             block = blocks.setdefault((group, material), _Block())
             words = line.split()[1:]
+            if len(block.corners) // 2 + len(words) > MAX_CORNERS:
+                raise SourceError("too_large", where, f"more than {MAX_CORNERS} face corners in one group")
             block.sizes.append(len(words))
             try:
                 for word in words:
                     block.corners.extend(_corner(word, len(v_lines), len(vt_lines)))
             except (ValueError, OverflowError) as error:
                 raise SourceError("not_obj", where, "has a face index that is no number") from error
-            if len(block.corners) > 2 * MAX_CORNERS:
-                raise SourceError("too_large", where, f"more than {MAX_CORNERS} face corners in one group")
         elif head == b"vt":
             vt_lines.append(line)
         elif head in {b"g ", b"o "}:
