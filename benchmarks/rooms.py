@@ -27,7 +27,6 @@ import numpy as np
 
 from pipeline import params, tables, taxonomy
 from pipeline.diffusion.codec import proposals_of
-from pipeline.diffusion.context import RoomContext
 from pipeline.diffusion.rooms import Example, read_sets
 from pipeline.diffusion.sampling import Sampler
 from pipeline.entities.home import Home, Placement
@@ -35,7 +34,7 @@ from pipeline.experiments.realism import alike, embeddings, furnished
 from pipeline.experiments.settings import spread
 from pipeline.experiments.trials import FIRST, test_rooms
 from pipeline.homes.factory import Factory, load_factory
-from pipeline.homes.furnish import Draft, draft_rooms, retrieve
+from pipeline.homes.furnish import Draft, context_of, draft_rooms, retrieve
 from pipeline.homes.request import RoomJob
 from pipeline.homes.room_finishing import finish
 from pipeline.homes.rows import object_row
@@ -99,9 +98,9 @@ def drafts_of_real(factory: Factory, jobs: Sequence[RoomJob], real: Sequence[Exa
     """Return real rooms as drafts: for each thing the library's model that is nearest to its size and shape."""
     drafts, known = [], taxonomy.load()
     for job, room in zip(jobs, real, strict=True):
-        context = RoomContext.of(job.plan, job.room_id, job.layout_type)
+        context = context_of(job, factory.seed, factory.index)
         things = proposals_of(room.continuous, [known.names[k] for k in room.classes], context)
-        drafts.append(retrieve(job, context, things, factory.index, known, factory.seed))
+        drafts.append(retrieve(job, context, things, factory.index, known))
     return drafts
 
 

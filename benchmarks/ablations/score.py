@@ -20,10 +20,9 @@ from benchmarks.ablations.variants import VARIANTS
 from benchmarks.rooms import ROOT, SPLIT, arrangements, jobs_of
 from pipeline import params, taxonomy
 from pipeline.diffusion.codec import proposals_of
-from pipeline.diffusion.context import RoomContext
 from pipeline.experiments.realism import embeddings, furnished
 from pipeline.homes.factory import Factory, load_factory
-from pipeline.homes.furnish import retrieve
+from pipeline.homes.furnish import context_of, retrieve
 from pipeline.homes.request import RoomJob
 from pipeline.metrics.layout_features import features
 from pipeline.metrics.relations import compare
@@ -74,9 +73,9 @@ def drafts(factory: Factory, made: Made, jobs: Mapping[str, RoomJob], truth: Seq
     for start in range(0, len(parts), len(own)):
         placed = []
         for job, which in zip(own, parts[start : start + len(own)], strict=True):
-            context = RoomContext.of(job.plan, job.room_id, job.layout_type)
+            context = context_of(job, factory.seed, factory.index)
             things = proposals_of(made.rows[which].astype(float), [known.names[k] for k in made.classes[which]], context)
-            placed.append(retrieve(job, context, things, factory.index, known, factory.seed).placements)
+            placed.append(retrieve(job, context, things, factory.index, known).placements)
         rooms = zip(arrangements(truth, own, placed), truth, strict=True)
         seeds.append([replace(room, name=floor.name) for room, floor in rooms if room.categories])
     return seeds

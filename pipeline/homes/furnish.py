@@ -42,16 +42,14 @@ def draft_rooms(resources: Resources, jobs: Sequence[RoomJob]) -> list[Draft]:
     """
     sampler, known = resources.sampler, taxonomy.load()
     with resources.time("sample"):
-        wholes = [RoomContext.of(job.plan, job.room_id, job.layout_type) for job in jobs]
+        wholes = [context_of(job, sampler.seed, resources.index) for job in jobs]
         draws = [seeds.generator(sampler.seed, "usual", job.index, job.number) for job in jobs]
-        tastes = [taste_of(job, sampler.seed, resources.index) for job in jobs]
-        wholes = [replace(whole, taste=taste) for whole, taste in zip(wholes, tastes, strict=True)]
         rooms = [_parts(job, whole, known, draw) for job, whole, draw in zip(jobs, wholes, draws, strict=True)]
         contexts = [part for parts in rooms for part in parts]
         keys = [(job.index, job.number + PART * k, job.draw) for job, parts in zip(jobs, rooms, strict=True) for k in range(len(parts))]
         proposals = iter(sampler.sample_rooms(contexts, keys))
         drafts = [
-            retrieve(job, whole, [p for _ in parts for p in next(proposals)], resources.index, known, sampler.seed)
+            retrieve(job, whole, [p for _ in parts for p in next(proposals)], resources.index, known)
             for job, whole, parts in zip(jobs, wholes, rooms, strict=True)
         ]
         give_memory_back()  # some 30 MiB of the sampler's, before previews take as much
@@ -74,6 +72,11 @@ def _split_count(count: int | None, areas: Sequence[float]) -> list[int | None]:
         return [None] * len(areas)
     passed = np.round(count * np.cumsum(areas) / sum(areas)).astype(int)
     return [int(n) for n in np.diff(passed, prepend=0)]
+
+
+def context_of(job: RoomJob, seed: int, index: AssetIndex) -> RoomContext:
+    """Return a job's room with its taste, nothing asked of it."""
+    return replace(RoomContext.of(job.plan, job.room_id, job.layout_type), taste=taste_of(job, seed, index))
 
 
 def taste_of(job: RoomJob, seed: int, index: AssetIndex) -> Taste:
@@ -134,13 +137,12 @@ def retrieve(
     proposals: Sequence[Proposal],
     index: AssetIndex,
     words: Taxonomy,
-    seed: int,
 ) -> Draft:
-    """Replace each proposal by the nearest asset that suits the room's taste, standing on the floor, hanging from the ceiling, or at its wall.
+    """Replace each proposal by the nearest asset that suits the taste of the room `context`, standing on the floor, hanging from the ceiling, or at its wall.
 
     Object ids carry the room's id and the slot, so they are unique in the home.
     """
-    taste = taste_of(job, seed, index)
+    taste = context.taste or Taste()
     if not proposals:
         return Draft(job, (), taste=taste)
     matches = _matches(job, index, taste, proposals)

@@ -81,10 +81,11 @@ def parse_obj(data: bytes, where: str) -> ObjFile:
         raise SourceError("not_obj", where, "is empty")
     if b"\x00" in data[:4096] or data[:2] == b"\x1f\x8b" or data.lstrip()[:1] == b"<":
         raise SourceError("not_obj", where, "is no text of an OBJ file")
-    counts = data.count(b"\nv "), data.count(b"\nf "), data.count(b"\nvt")
+    text = b"\n" + _plain(data)
+    counts = text.count(b"\nv "), text.count(b"\nf "), text.count(b"\nvt")
     if counts[0] > MAX_VERTICES or counts[1] > MAX_FACES or counts[2] > MAX_UVS:  # before lines without end take memory
         raise SourceError("too_large", where, f"has {counts[0]} vertices, {counts[1]} faces and {counts[2]} uvs")
-    v_lines, vt_lines, blocks, library = _read_lines(_plain(data), where)
+    v_lines, vt_lines, blocks, library = _read_lines(text, where)
     vertices = _numbers(v_lines, 3, where)
     uvs = _numbers(vt_lines, 2, where) if vt_lines else np.zeros((0, 2))
     if len(vertices) and np.abs(vertices).max() > MAX_COORDINATE:
@@ -104,19 +105,19 @@ class _Block:
 
 
 def _read_lines(data: bytes, where: str) -> tuple[list[bytes], list[bytes], dict[tuple[str, str], _Block], str]:
-    """Return the lines of vertices, of uvs, the faces by (group, material), and the mtllib's name. Raises SourceError `too_large` beyond the limits."""
+    """Return the lines of vertices, of uvs, the faces by (group, material), and the mtllib's name. Raises SourceError `too_large` beyond the limits of groups and corners."""
     v_lines: list[bytes] = []
     vt_lines: list[bytes] = []
     blocks: dict[tuple[str, str], _Block] = {}
     group, material, library = "", "", ""
-    faces = 0
     for line in data.split(b"\n"):
         head = line[:2]
         if head == b"v ":
             v_lines.append(line)
         elif head == b"f ":
-            faces += 1
             block = blocks.setdefault((group, material), _Block())
+            if len(blocks) > MAX_GROUPS:
+                raise SourceError("too_large", where, f"more than {MAX_GROUPS} groups")
             words = line.split()[1:]
             if len(block.corners) // 2 + len(words) > MAX_CORNERS:
                 raise SourceError("too_large", where, f"more than {MAX_CORNERS} face corners in one group")
@@ -134,10 +135,6 @@ def _read_lines(data: bytes, where: str) -> tuple[list[bytes], list[bytes], dict
             material = _name(line)
         elif line.startswith(b"mtllib"):
             library = _name(line)
-        if len(v_lines) > MAX_VERTICES or len(vt_lines) > MAX_UVS or faces > MAX_FACES or len(blocks) > MAX_GROUPS:
-            raise SourceError(
-                "too_large", where, f"more than {MAX_VERTICES} vertices, {MAX_UVS} uvs, {MAX_FACES} faces or {MAX_GROUPS} groups"
-            )
     return v_lines, vt_lines, blocks, library
 
 
