@@ -188,9 +188,6 @@ def _area(draft: Draft, token: Token, room: Named) -> None:
     room.low, room.high, room.target = box.get("min", room.low), box.get("max", room.high), box.get("target", room.target)
     room.min_width = token.side if token.side is not None else room.min_width
     draft.cite(token.first, token.last, f"rooms.{room.id}.area")
-    if room.low is not None and room.high is not None and room.low > room.high:
-        what = f"{room.id} is to have at least {room.low:g} and at most {room.high:g} m²"
-        raise ImpossibleError(what, "keep one of the two", draft.citations(f"rooms.{room.id}.area"))
 
 
 def _total(draft: Draft, token: Token) -> None:

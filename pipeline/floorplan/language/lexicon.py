@@ -213,8 +213,9 @@ class Lexicon:
         self.targets = tuple(sorted(targets - blocked, key=lambda w: (w not in named, w)))  # names of rooms first
         others = dict.fromkeys(self.vocabulary, COMMON) | others
         others = dict.fromkeys(_things(self.language, entries.plurals), FARTHER[True]) | others
-        spared = set(self.targets)
-        self.others = {w: far for w, far in others.items() if w not in spared and w.isalpha()}  # how much farther an error is from them
+        self.strong = frozenset(self.targets)
+        # how much farther an error is from these
+        self.others = {w: far for w, far in others.items() if w not in self.strong and w.isalpha()}
 
 
 def _meanings(e: _Entries) -> Iterator[tuple[str, Meaning]]:

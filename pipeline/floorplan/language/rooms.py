@@ -363,8 +363,9 @@ def _introduce_rooms(state: Reading, sentence: list[Token], k: int, level: int |
         listed = _before(sentence, k, "cue", "colon", "open", "verb", "comma")
         if distinct and count <= len(slots) and (listed is None or listed is sentence[k - 1]):  # "two bedrooms: one bedroom with"
             return [close(r, "", e.text, level) for r in slots[:count]]
-    if same and count == 1 and not e.number and not role and e.type in ALONE and "another" not in e.det:
-        return same[:1]
+    here = [r for r in same if level is None or r.level in {None, level}]
+    if here and count == 1 and not e.number and not role and e.type in ALONE and "another" not in e.det:
+        return here[:1]
     rooms = _new(state, e, count, role, level)
     for room in rooms:
         room.extra, room.span = "another" in e.det, (e.first, e.last)

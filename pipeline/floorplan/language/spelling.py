@@ -18,14 +18,11 @@ FAR, SURELY = 9.0, 1.5  # farther than any word is, and the distance from which 
 
 def repair(written: Sequence[Word], texts: Sequence[str], lex: Lexicon) -> tuple[list[Word], list[str]]:
     """Return the words with what they are in the vocabulary: inflected and mistyped ones replaced, run-together ones split."""
-    repaired: list[Word] = []
-    read: list[str] = []
+    read: list[tuple[Word, str]] = []
     for word, text in zip(written, texts, strict=True):
-        parts = (text,) if text in lex.vocabulary or not text.replace("'", "").isalpha() else resolve(text, lex.language, every=True)
-        for part in parts:
-            repaired.append(word)
-            read.append(part)
-    return repaired, read
+        known = text in lex.vocabulary or not text.replace("'", "").isalpha()
+        read += [(word, part) for part in ((text,) if known else resolve(text, lex.language, every=True))]
+    return [word for word, _ in read], [part for _, part in read]
 
 
 @functools.lru_cache(maxsize=8192)
@@ -41,7 +38,7 @@ def resolve(word: str, language: Language, *, every: bool = False) -> tuple[str,
     if bared != word:
         return (bared,) if bared in lex.vocabulary else resolve(bared, language, every=every)
     near, cost = _nearest(word, language, every)
-    if near and cost <= (ONE if near in _strong(language) else USUAL):
+    if near and cost <= (ONE if near in lex.strong else USUAL):
         return (near,)
     if parts := _split(word, lex):
         return parts
@@ -67,8 +64,7 @@ def _stem(word: str, lex: Lexicon) -> str:
 
 def _split(word: str, lex: Lexicon) -> tuple[str, ...]:
     """Split "twobedroom", "openkitchen", "intothe" into known words."""
-    targets = _strong(lex.language)
-    if parts := lex.compounds.split(word, lex.vocabulary, targets):
+    if parts := lex.compounds.split(word, lex.vocabulary, lex.strong):
         return parts
     for cut in range(len(word) - 2, 1, -1):
         a, b = word[:cut], word[cut:]
@@ -76,7 +72,7 @@ def _split(word: str, lex: Lexicon) -> tuple[str, ...]:
             continue
         least, most = sorted((len(a), len(b)))
         speak = all(_speaks(w, lex) for w in (a, b))
-        if (least >= SHORTEST - 1 and (a in targets or b in targets)) or (speak and most >= SHORTEST - 1):
+        if (least >= SHORTEST - 1 and (a in lex.strong or b in lex.strong)) or (speak and most >= SHORTEST - 1):
             return (a, b)
     return ()
 
@@ -84,14 +80,9 @@ def _split(word: str, lex: Lexicon) -> tuple[str, ...]:
 def _speaks(word: str, lex: Lexicon) -> bool:
     """Whether a word builds sentences or names a room; of two letters only an article, a preposition and their like."""
     if len(word) >= SHORTEST - 1:
-        return word in lex.targets or lex.others.get(word, 1.0) <= FARTHER[True]
+        return word in lex.strong or lex.others.get(word, 1.0) <= FARTHER[True]
     meaning: Meaning | None = lex.trie.get(word, {}).get("")
     return meaning is not None and meaning.kind in TINY
-
-
-@functools.cache
-def _strong(language: Language) -> frozenset[str]:
-    return frozenset(lexicon(language).targets)
 
 
 def _nearest(word: str, language: Language, every: bool) -> tuple[str, float]:

@@ -14,6 +14,7 @@ STOPS = {".", "!", "?", ";"}
 PUNCTUATION = {",": "comma", ":": "colon", "(": "open", ")": "close", "/": "slash", "&": "and", "+": "and", "•": "bullet", "|": "comma", "*": "bullet"}  # fmt: skip
 ENDS = {"stop", "line"}  # kinds of tokens that end a sentence
 HEADS = {"room", "suite"}
+PHRASE = {"det", "num", "size", "adj", "room", "suite", "clf"}
 LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a head
 # metres or feet in a length -> square metres in that of an area, and from how many on those of a room or a home are square ones ("60 metros")
 SQUARES = {1.0: (1.0, 8.0), 0.3048: (0.092903, 49.0)}
@@ -221,9 +222,15 @@ def on_each_level(tokens: Sequence[Token]) -> list[Token]:
     for said in [t for t in tokens if t.value == "each_floor"]:
         k = next(j for j, t in enumerate(spread) if t is said)
         start, end = k, k + 1
-        while start and spread[start - 1].kind in {"det", "num", "size", "adj", "room", "suite", "clf"}:
+        while start and spread[start - 1].kind in PHRASE:
             start -= 1
         leads = not any(t.kind == "room" for t in spread[start:k])
+        first = start - 1  # of two rooms that an "and" joins both are on each floor, of a longer list the last
+        while first > 0 and (spread[start - 1].kind, spread[start - 1].value) == ("join", "and") and spread[first - 1].kind in PHRASE:
+            first -= 1
+        opens = next((j for j in range(first, 0, -1) if spread[j - 1].kind in ENDS), 0)
+        if not leads and 0 <= first < start - 1 and not any(t.kind == "room" for t in spread[opens:first]):
+            start = first
         while leads and end < len(spread) and spread[end].kind not in {"comma", "stop"} and spread[end].value != "each_floor":
             end += 1
         rooms = spread[k + 1 : end] if leads else spread[start:k]

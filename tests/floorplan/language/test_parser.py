@@ -178,6 +178,24 @@ def test_storeys_in_words():
 
 
 @pytest.mark.parametrize(
+    ("prompt", "rooms"),
+    [
+        (
+            "Two floors, a bathroom and a bedroom on each floor.",
+            {("bathroom", 0): 1, ("bathroom", 1): 1, ("bedroom", 0): 1, ("bedroom", 1): 1},
+        ),
+        (
+            "A living room, a kitchen and a bathroom on each floor.",
+            {("living_room", 0): 1, ("kitchen", 0): 1, ("bathroom", 0): 1, ("bathroom", 1): 1},
+        ),
+        ("A house with two storeys, on each floor a hallway.", {("hallway", 0): 1, ("hallway", 1): 1}),
+    ],
+)
+def test_what_is_said_of_each_floor_is_on_every_storey(prompt, rooms):
+    assert Counter((r.type, r.level) for r in parse(prompt).rooms if r.stated) == rooms
+
+
+@pytest.mark.parametrize(
     ("prompt", "words"),
     [
         ("a bedroom with no bathroom, but an en suite bathroom", "bathroom"),
