@@ -4,8 +4,9 @@ import dataclasses
 from collections.abc import Iterator, Mapping
 
 from pipeline.errors import RefusedError
+from pipeline.floorplan.language.furnishing import Mention, room_mentions
 from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
-from pipeline.floorplan.language.parser import Mention, attach, check_length, read_furniture, room_mentions, understand_rooms
+from pipeline.floorplan.language.parser import attach, check_length, read_furniture, understand_rooms
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, split_words
 from pipeline.floorplan.program.consistency import ImpossibleError, check_furniture

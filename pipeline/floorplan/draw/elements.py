@@ -123,7 +123,7 @@ def _arrow(tip: Points, along: Points, size: float) -> Points:
     return np.array([tip + 0.6 * size * ahead, tip - 0.4 * size * ahead + 0.4 * size * side, tip - 0.4 * size * ahead - 0.4 * size * side])
 
 
-def clearance(plan: Plan, opening: Opening) -> Points:
+def cutout(plan: Plan, opening: Opening) -> Points:
     """Return the rectangle (4, 2) that an opening cuts out of its wall."""
     p, q = opening.segment
     along = (q - p) / np.linalg.norm(q - p)
@@ -148,7 +148,7 @@ def leaf(plan: Plan, opening: Opening) -> tuple[Points, Points] | None:
 
 
 def _opening(plan: Plan, opening: Opening, rooms: Sequence[Room]) -> Iterator[Mark]:
-    around = clearance(plan, opening)
+    around = cutout(plan, opening)
     types = {r.room_id: r.type for r in rooms}
     if opening.kind == "window":
         yield Area((around,), "#ffffff", WALL)

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 
-from pipeline.floorplan.language.phrases import backward, heads
+from pipeline.floorplan.language.phrases import backward, heads, listed_on_level
 from pipeline.floorplan.language.rooms import FRONT, HALLS, PRIVATE, Group, Reading, name
 from pipeline.floorplan.language.tokens import Token
 from pipeline.floorplan.program.defaults import DEFAULTS
@@ -324,7 +324,7 @@ def level(c: Clause, k: int, e: Token) -> None:
         c.forward, c.level, c.run = True, int(e.value), []
         return
     owners = c.subject if c.objects and c.latest == c.objects else ()  # "a guest room with bath, downstairs"
-    for room in map(c.stock.get, named_rooms(part if closes else (*c.latest, *owners))):
+    for room in map(c.stock.get, named_rooms(part if closes else ids_of(listed_on_level(c.sentence, k)) or (*c.latest, *owners))):
         room.level = int(e.value)
     c.state.heights |= {i.removeprefix("*zone_"): int(e.value) for i in c.latest if i.startswith("*")}
 
@@ -366,7 +366,7 @@ def measures_home(c: Clause, k: int, token: Token, ids: Group, set_off: bool) ->
     home = any(x.kind == "home" and not x.amounts for x in c.sentence[:k])
     named = [x for x in rooms if x.first < token.first]
     if set_off:
-        return times > (LISTED if len(named) > 2 else MORE if home else LARGE if len(named) > 1 else math.inf)
+        return times > (LISTED if len(named) > 2 else MORE if home else LARGE if len(ids) > 1 else math.inf)
     closes = len(named) == len(rooms) and (len(rooms) > 2 or home)
     return times > (LARGE if closes else HUGE if home else math.inf)
 

@@ -17,6 +17,7 @@ from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, has_minus, split_words, words
 from pipeline.floorplan.language.tokens import read_words, segment
+from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
 
 STOPS = frozenset(".;!?\n。;!?")
@@ -169,7 +170,7 @@ class Scan:
         other, around = lexicon()["beside"].get(name), range(max(stop + 1, k - FAR), k + FAR)
         named = [(j, length) for j in around if other for length, kind, of, _ in self._here(j) if (kind, of) == ("name", other)]
         alone = [j for j, length in named if self.text(j + length) not in lexicon()["words"]["rooms"]]
-        if any(self.length(i, "none") for j in alone for i in range(min(j, k) - 2, max(j, k))):
+        if any(self.length(i, "none") for j in alone for i in range(min(j, k) - 4, max(j, k))):
             return True  # "a shower instead of a bathtub"
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None and (name not in lexicon()["apart"] or self._past(at + 1) >= k):
@@ -366,3 +367,23 @@ class Scan:
         """Note the style that stands between an amount and a thing."""
         if length:
             self._put("style", k, k + length, self.phrase(k, "look")[1])
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """Words of the prompt that name rooms."""
+
+    start: int
+    end: int
+    ids: tuple[str, ...]
+
+
+def room_mentions(program: FloorProgram) -> list[Mention]:
+    """Return where the prompt names rooms, in its order."""
+    by_span: dict[tuple[int, int], list[str]] = {}
+    ids = {r.id for r in program.rooms}
+    for e in program.evidence:
+        room = e.field.removeprefix("rooms.")
+        if e.field.startswith("rooms.") and room in ids:
+            by_span.setdefault((e.start, e.end), []).append(room)
+    return [Mention(start, end, tuple(dict.fromkeys(rooms))) for (start, end), rooms in sorted(by_span.items())]

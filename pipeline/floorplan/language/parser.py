@@ -4,7 +4,7 @@ import bisect
 import itertools
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NoReturn
 
 from pydantic import ValidationError
@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.language.builder import assemble
 from pipeline.floorplan.language.frames import apply_frames, join_brackets
-from pipeline.floorplan.language.furnishing import COMMAS, STOPS, Claim, Scan
+from pipeline.floorplan.language.furnishing import COMMAS, STOPS, Claim, Mention, Scan, room_mentions
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.phrases import ban, refuse, sentences, settle
 from pipeline.floorplan.language.rooms import Reading, introduce
@@ -230,15 +230,6 @@ def _blank(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
     return blank
 
 
-@dataclass(frozen=True, slots=True)
-class Mention:
-    """Words of the prompt that name rooms."""
-
-    start: int
-    end: int
-    ids: tuple[str, ...]
-
-
 def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions: Sequence[Mention] | None = None) -> FloorProgram:
     """Return the program with the wishes in its rooms and in `furniture`, and their evidence.
 
@@ -252,7 +243,8 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
     for claim in claims:
         every = tuple(r.id for r in program.rooms) if claim.home and claim.kind in {"pieces", "openable"} else ()
         rooms = every or place.of(claim) or ("",)
-        usual = next((t for t in natural(claim.name) if t in {place.kinds.get(i) for i in rooms}), "") if claim.kind == "count" else ""
+        choose = claim.kind == "count" and not claim.inward  # "a desk in the bedroom and in the study" is said of both
+        usual = next((t for t in natural(claim.name) if choose and t in {place.kinds.get(i) for i in rooms}), "")
         rooms = tuple(i for i in rooms if place.kinds.get(i) == usual) or rooms  # a dining table in one of two halls
         one = replace(claim, least=1) if claim.plural and len(rooms) > 1 else claim  # "two bedrooms with wardrobes"
         for room in rooms:
@@ -267,17 +259,6 @@ def attach(program: FloorProgram, claims: Sequence[Claim], prompt: str, mentions
     apart = {r.id: {"functions": ("living", "sleeping")} for r in program.rooms if cooks and r.type == "studio_room"}
     furnished = (r.model_copy(update=said[r.id] | apart.get(r.id, {})) for r in program.rooms)
     return program.model_copy(update={"rooms": tuple(furnished), "furniture": own, "evidence": (*program.evidence, *evidence)})
-
-
-def room_mentions(program: FloorProgram) -> list[Mention]:
-    """Return where the prompt names rooms, in its order."""
-    by_span: dict[tuple[int, int], list[str]] = {}
-    ids = {r.id for r in program.rooms}
-    for e in program.evidence:
-        room = e.field.removeprefix("rooms.")
-        if e.field.startswith("rooms.") and room in ids:
-            by_span.setdefault((e.start, e.end), []).append(room)
-    return [Mention(start, end, tuple(dict.fromkeys(rooms))) for (start, end), rooms in sorted(by_span.items())]
 
 
 def combine_claims(claims: Sequence[Claim], prompt: str, where: str) -> Furniture:
@@ -322,6 +303,7 @@ class _Place:
         self.claims, self.prompt, self.named = claims, prompt, named
         self.kinds: Mapping[str, str] = {r.id: r.type for r in program.rooms}
         self.scan = Scan(prompt)
+        self.elsewhere = -1  # where the last wish ends that went past the room in front of it
         self.stops = [-1, *(w.start for w in self.scan.words if w.text in STOPS), len(prompt)]
 
     def _at(self, place: int) -> int:
@@ -341,7 +323,7 @@ class _Place:
         if claim.home or (claim.kind == "style" and not after and not before):
             return ()
         if inward or (len(gap) <= CLOSE and self.scan.length(self._at(claim.end), "of")):  # "带淋浴的卫生间"
-            return after[0].ids
+            return self._and_in(after)
         if claim.kind == "style":  # a room's where it stands in the room's list of wishes or right before its name
             if before and self._joined(before[-1].end, claim.start) and self._led(before[-1], claim):
                 return before[-1].ids
@@ -353,11 +335,26 @@ class _Place:
         room, usual = before[-1], self._natural(claim, before[-1])
         if self._dwelling(room) and not (claim.plural and usual):
             return ()  # "a two-bedroom flat with a sofa"; but "with bunk beds"
-        joined = self._joined(room.end, claim.start)
+        joined, barred = self._joined(room.end, claim.start), any(impossible(self.kinds[i], claim.name) for i in room.ids)
+        follows = not usual and self.elsewhere >= 0 and self._joined(self.elsewhere, claim.start)
+        if follows or (barred and "," in self.prompt[room.end : claim.start]):
+            self.elsewhere = claim.end
+            return likely[0] if likely else ()  # "a studio with a bathroom, put a bed and a desk in it"
         if usual or (joined and self._led(room, claim)):
             return room.ids
-        mine = not joined and not any(impossible(self.kinds[i], claim.name) for i in room.ids)
+        mine = not joined and not barred
         return likely[0] if likely else room.ids if mine else ()  # "two bedrooms, a kitchen and a sofa": the home's
+
+    def _and_in(self, after: Sequence[Mention]) -> tuple[str, ...]:
+        """Return the rooms of the first mention and of those that go on from it: "in the bedroom and in the study"."""
+        ids = after[0].ids
+        for one, other in itertools.pairwise(after):
+            k = self._at(one.end)
+            joined = self.scan.text(k) not in COMMAS and self.scan.length(k, "and")
+            if not joined or not self.scan.length(k + joined, "in"):
+                break
+            ids += tuple(i for i in other.ids if i not in ids)
+        return ids
 
     def _dwelling(self, room: Mention) -> bool:
         """Whether a room says how large a home is: "a two-bedroom flat", "un piso de dos dormitorios"."""

@@ -37,6 +37,16 @@ def backward(sentence: list[Token], k: int, level: int | None) -> int | None:
     return level
 
 
+def listed_on_level(sentence: list[Token], k: int) -> list[Token]:
+    """Return the phrases of the list that the storey at k closes, where the sentence is a row of such lists: "A, B and C downstairs, D and E upstairs"."""
+    at = [j for j, e in enumerate(sentence) if e.kind == "level"]
+    start = max((j for j, e in enumerate(sentence[:k]) if e.kind in {"level", "colon"}), default=0)
+    listed = [j for j in range(start, k) if sentence[j].kind == "np"]
+    joined = len(listed) > 1 and any(e.kind == "and" for e in sentence[listed[-2] : listed[-1]])
+    closes = at[-1] + 1 == len(sentence) or sentence[at[-1] + 1].kind in {"comma", "stop", "but", "close"}
+    return [sentence[j] for j in listed] if len(at) > 1 and joined and closes else []
+
+
 def sentences(tokens: Sequence[Token], words: Words) -> list[list[Token]]:
     """Return the elements of each sentence."""
     by_sentence: list[list[Token]] = [[]]

@@ -173,6 +173,8 @@ def _is_listed_again(sentence: list[Token], k: int) -> bool:
     items = [here] if first is None else [first, here]
     bare = not any(e.det or e.number or e.plural or (e.role and not e.amounts) for e in items)
     ends = k + 1 == len(sentence) or sentence[k + 1].kind not in {"cue", "verb"}  # of "..., bathroom next to it" it is the subject
+    if any(a.kind == "cmp" and b is first for a, b in itertools.pairwise(sentence)):
+        return False  # "卧室要比书房大,书房里放..."
     return first is not None and bare and ends and here.type not in ALONE and sentence[k - 1].kind in {"comma", "join"}
 
 

@@ -388,6 +388,7 @@ def _things(c: Clause, j: int, owners: Group) -> Group:
     x.ids = tuple(ids[: len(owners)] if x.type == "bathroom" else ids)
     for room in (c.stock.get(i) for i in x.ids):
         room.size = x.size if x.size != 1.0 else room.size
+        room.functions |= x.functions
     return x.ids
 
 

@@ -91,11 +91,14 @@ class Words:
 
 
 def sentences_of(tokens: Sequence[Token]) -> Iterator[list[Token]]:
-    """Yield the tokens of each sentence, its end with it."""
+    """Yield the tokens of each sentence, its end with it; one that takes something back goes on the sentence before: "100 m². Sorry, 110 m²"."""
     sentence: list[Token] = []
-    for token in tokens:
+    for k, token in enumerate(tokens):
         sentence.append(token)
-        if token.kind in ENDS:
+        ahead = next((m for m in tokens[k + 1 :] if m.kind not in {"fill", "comma"}), None)
+        if token.kind in ENDS and ahead is not None and ahead.kind == "fix":
+            sentence[-1] = replace(token, kind="comma")
+        elif token.kind in ENDS:
             yield sentence
             sentence = []
     if sentence:

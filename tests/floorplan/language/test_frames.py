@@ -13,7 +13,7 @@ from tests.floorplan.language.faults import faults
 
 KINDS = {
     "wish", "people", "fill", "ignored", "needless", "activity", "adj", "amount", "bound", "but", "clf", "close", "cmp", "colon", "comma", "cue", "dash", "det", "enough", "enter", "every", "factor", "fix", "flag", "home", "hyphen", "join", "level", "look", "neg", "num",
-    "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "stop", "suite", "times", "to", "unit", "verb", "via", "wing", "zone",
+    "open", "ord", "outside", "owner", "post", "pron", "reciprocal", "relative", "room", "size", "slash", "stop", "suite", "times", "to", "unit", "verb", "via", "wing", "word", "zone",
     "single", "two", "many", "some", "zero", "small", "bounded", "plain_area", "large", "vast", "one_room", "lone", "some_of", "halved", "roomy", "^", "$",
 }  # fmt: skip
 

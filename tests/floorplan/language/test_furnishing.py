@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from pipeline import taxonomy
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, parse
+from pipeline.floorplan.language.furnishing import Mention
 from pipeline.floorplan.language.lexicon import LANGUAGES
-from pipeline.floorplan.language.parser import Mention, attach, read_furniture
+from pipeline.floorplan.language.parser import attach, read_furniture
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq, Things
 from pipeline.floorplan.program.furniture import lexicon, matching_categories, members, natural
 
