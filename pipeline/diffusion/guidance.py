@@ -23,6 +23,7 @@ from pipeline.diffusion.settings import SampleSettings
 
 CLEARANCE = 0.45  # [m] kept free at a doorway whose leaf does not turn into the room
 DEEP = 0.04  # [m] from which depth on a push grows no further: squares would share an overlap out along a row that is too full
+PRESSED = 0.01  # [m] of overlap that is left where a smaller asset is asked for
 LEAF_HEIGHT = 2.0  # [m] a door leaf and a person need that much
 EIGHT = ((-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (0, 1), (-1, 0), (1, 0))  # corners and side middles, in halves of the sides
 
@@ -223,9 +224,39 @@ class Guidance:
         if guides:
             if s.articulation == "heuristic":
                 sweeps = heuristic_sweeps(codec.metric(moved[..., : SIZE.stop], self.classes)[..., SIZE], self.opens[self.classes])
-            for _ in range(s.articulation_steps):
-                moved[..., : YAW.stop] += articulation_descent(codec, moved, self.classes, sweeps, self.rooms, s, self.tucked)
+            moved = self._descended(codec, moved, sweeps)
+            if snaps and s.articulation == "joints":
+                moved = self._with_smaller(codec, moved, sweeps)
         return moved
+
+    def _descended(self, codec: Codec, x0: Tensor, sweeps: Tensor | None) -> Tensor:
+        """Return x0 pushed apart."""
+        moved = x0.clone()
+        for _ in range(self.settings.articulation_steps):
+            moved[..., : YAW.stop] += articulation_descent(codec, moved, self.classes, sweeps, self.rooms, self.settings, self.tucked)
+        return moved
+
+    def _with_smaller(self, codec: Codec, x0: Tensor, sweeps: Tensor | None) -> Tensor:
+        """Return x0 with the next smaller asset of its kind for what is still pressed between others, and these rooms pushed apart again.
+
+        Where a row is too long for its wall, pushing alone shares the overlap out. An asset is smaller by what reaches into it.
+        """
+        excess = 2 * articulation_gradient(codec, x0, self.classes, sweeps, self.rooms, self.tucked)[..., SIZE].clamp_min(0)
+        excess[..., 2] = 0
+        pressed = excess.amax(-1) > PRESSED
+        if not bool(pressed.any()):
+            return x0
+        asked = x0.clone()
+        asked[..., SIZE] -= torch.where(pressed[..., None], excess, 0.0) / codec.scale[self.classes, SIZE]
+        size, others = self._looked_up(codec, asked)
+        area = codec.metric(x0[..., : SIZE.stop], self.classes)[..., 3:5].prod(-1)
+        smaller = pressed & (size[..., :2].prod(-1) < area - 1e-4)
+        moved = x0.clone()
+        moved[..., : SIZE.stop] += torch.where(smaller[..., None], size_shift(codec, x0, self.classes, size), 0.0)
+        if sweeps is not None and others is not None:
+            sweeps = torch.where(smaller[..., None, None, None], others, sweeps)
+        again = smaller.any(-1)[:, None, None]  # a room does not know who shares its batch
+        return torch.where(again, self._descended(codec, moved, sweeps), x0)
 
     def _looked_up(self, codec: Codec, x0: Tensor) -> tuple[Tensor, Tensor | None]:
         """Ask the library for each object's asset: its size (B, N, 3) [m] and its sweeps (B, N, K, 2, 3) [m]."""
@@ -243,16 +274,24 @@ def articulation_descent(
     codec: Codec, x0: Tensor, classes: Tensor, sweeps: Tensor | None, rooms: RoomBatch, s: SampleSettings, tucked: Tensor | None = None
 ) -> Tensor:
     """Return the step (B, N, 8) down phi_articoll: position x, y and yaw move, size and height stay."""
-    metric = codec.metric(x0[..., : YAW.stop], classes).detach().requires_grad_()
-    with torch.enable_grad():
-        phi = articulated_collision(boxes_of(metric), classes < codec.classes, sweeps, rooms, tucked)
-        (gradient,) = torch.autograd.grad(phi.sum(), metric)
-    step = torch.zeros_like(metric)
+    gradient = articulation_gradient(codec, x0, classes, sweeps, rooms, tucked)
+    step = torch.zeros_like(gradient)
     move = -s.articulation_scale * gradient[..., :2]
     length = torch.linalg.vector_norm(move, dim=-1, keepdim=True)
     step[..., :2] = move * (s.clip / length.clamp_min(1e-9)).clamp_max(1.0) / codec.reach
     step[..., YAW] = (-s.turn_scale * s.articulation_scale * gradient[..., YAW]).clamp(-s.clip, s.clip)
     return step
+
+
+def articulation_gradient(
+    codec: Codec, x0: Tensor, classes: Tensor, sweeps: Tensor | None, rooms: RoomBatch, tucked: Tensor | None = None
+) -> Tensor:
+    """Return the gradient (B, N, 8) of phi_articoll by position, size, cos and sin [m]."""
+    metric = codec.metric(x0[..., : YAW.stop], classes).detach().requires_grad_()
+    with torch.enable_grad():
+        phi = articulated_collision(boxes_of(metric), classes < codec.classes, sweeps, rooms, tucked)
+        (gradient,) = torch.autograd.grad(phi.sum(), metric)
+    return gradient
 
 
 def size_shift(codec: Codec, x0: Tensor, classes: Tensor, size: Tensor) -> Tensor:

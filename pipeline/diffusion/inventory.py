@@ -21,7 +21,11 @@ from pipeline.diffusion.settings import InventorySettings
 from pipeline.tensors import Checkpoint, advance, cosine, generator, initial
 
 MOST = 12  # of one class in one room; more are counted as this
-ROOM_FEATURES = 6 + 2 * (len(KINDS) - 1)
+DEPTH = 0.6  # of what stands at a wall [m]
+WAY = 0.5  # free floor before an opening without a leaf [m]
+ON_WALL = 0.05  # how far off a wall's face an opening's ends may lie [m]
+STRETCHES = 4  # of wall that furniture may stand at, the longest, which a room's features tell
+ROOM_FEATURES = 6 + 2 * (len(KINDS) - 1) + 2 * STRETCHES
 DRAWS = 9  # inventories that are drawn for a room, of which the first that meets what is asked is taken
 UNTOLD = -1
 SEVERAL, LIKELY = 2, 0.003  # so many of a class, or more, are drawn only where that is at least this likely
@@ -132,7 +136,7 @@ class Ask:
 
 
 def room_features(floor: Floor, height: float) -> NDArray[np.float32]:
-    """Return features (F,) of a room, the same however it is turned: area, extents, perimeter, openings by kind."""
+    """Return features (F,) of a room, the same however it is turned: area, extents, perimeter, openings by kind, free wall."""
     walls = floor.ends[(floor.kind == 0) & floor.mask].astype(float)
     a, b = walls[:, 0], walls[:, 1]
     area = 0.5 * float(np.abs((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()))
@@ -144,7 +148,34 @@ def room_features(floor: Floor, height: float) -> NDArray[np.float32]:
         ends = floor.ends[of_kind]
         openings += [float(of_kind.sum()) / 2, float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=-1).sum()) / 3]
     shape = [np.log(max(area, 0.5)) - 2, extent[0] / 3 - 1, extent[1] / 4 - 1, around / 12 - 1, len(walls) / 8 - 1, height - 2.7]
-    return np.array([*shape, *openings], np.float32)
+    return np.array([*shape, *openings, *(free_stretches(floor).ravel() / 2 - 1)], np.float32)
+
+
+def free_stretches(floor: Floor) -> NDArray[np.float64]:
+    """Return the lengths (2, STRETCHES) of the longest stretches of wall that furniture may stand at, falling [m]: with no opening in DEPTH before them, and with no door.
+
+    A door takes the square that its leaf turns in, where it turns into the room.
+    """
+    start, stop = (floor.ends[:, k].astype(float) for k in (0, 1))
+    length = np.linalg.norm(stop - start, axis=1)
+    wall, opening = np.flatnonzero(floor.mask & (floor.kind == 0)), np.flatnonzero(floor.mask & (floor.kind != 0))
+    window = floor.kind[opening] == KINDS.index("window")
+    ahead = floor.normal[opening] * np.where(window, 0.0, np.where(floor.hinge[opening] >= 0, length[opening], WAY))[:, None]
+    corners = np.stack([start[opening], stop[opening], start[opening] + ahead, stop[opening] + ahead], 1)
+    along = (stop - start)[wall] / np.maximum(length[wall], 1e-9)[:, None]
+    away = corners[None] - start[wall][:, None, None]  # (W, O, 4, 2)
+    s, off = (np.einsum("wokx,wx->wok", away, axis) for axis in (along, floor.normal[wall].astype(float)))
+    taken = (off.min(-1) < DEPTH) & (off.max(-1) > -ON_WALL)
+    free: tuple[list[float], list[float]] = ([], [])
+    for low, stretches in enumerate(free):
+        for k, end in enumerate(length[wall]):
+            at = 0.0
+            blocks = taken[k] & ~window if low else taken[k]
+            for a, b in sorted(zip(s[k, blocks].min(-1), s[k, blocks].max(-1), strict=True)):
+                stretches.append(min(a, end) - at)
+                at = max(at, b)
+            stretches.append(end - at)
+    return np.stack([np.sort(np.maximum([*stretches, *[0.0] * STRETCHES], 0.0))[: -STRETCHES - 1 : -1] for stretches in free])
 
 
 class Holdings(NamedTuple):

@@ -24,7 +24,7 @@ class ModelSettings:
 class InventorySettings:
     """The model of what a room holds."""
 
-    width: int = 64
+    width: int = 96
     steps: int = 1200
     batch: int = 96  # rooms
     learning_rate: float = 3e-3

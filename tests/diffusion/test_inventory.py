@@ -3,7 +3,7 @@ import pytest
 import torch
 
 from pipeline import seeds
-from pipeline.diffusion.context import CategoryBounds
+from pipeline.diffusion.context import CategoryBounds, RoomContext, RoomOpening, floor_tokens
 from pipeline.diffusion.inventory import (
     DRAWS,
     Ask,
@@ -11,6 +11,7 @@ from pipeline.diffusion.inventory import (
     Inventory,
     draw_inventories,
     fit,
+    free_stretches,
     initial_inventory,
     repair_counts,
     room_features,
@@ -165,6 +166,25 @@ def test_features_do_not_change_when_the_room_is_turned():
     turn = np.array([[0, -1], [1, 0]], np.float32)
     turned = replace(floor, ends=floor.ends @ turn.T, normal=floor.normal @ turn.T)
     np.testing.assert_allclose(room_features(turned, 2.7), room_features(floor, 2.7), atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("door", "hinge", "free", "before_windows"),
+    [
+        ((1.0, 1.9), 0, (3.0, 3.0, 2.1, 1.5), (4.0, 3.0, 3.0, 2.1)),
+        ((0.1, 1.0), 0, (3.0, 3.0, 2.1, 1.5), (4.0, 3.0, 3.0, 2.1)),  # its leaf turns before the side wall, 0.9 m of which are lost
+        ((0.1, 1.0), -1, (3.0, 3.0, 2.5, 1.5), (4.0, 3.0, 3.0, 2.5)),  # no leaf: half a metre to walk
+    ],
+)
+def test_furniture_stands_where_neither_openings_nor_leaves_are(door, hinge, free, before_windows):
+    polygon = np.array([[0, 0], [4, 0], [4, 3], [0, 3]], float)
+    openings = (
+        RoomOpening("door", np.array([[door[0], 0], [door[1], 0]]), hinge=hinge),
+        RoomOpening("window", np.array([[2.5, 3], [1.5, 3]]), sill=0.9),
+    )
+    found = free_stretches(floor_tokens(RoomContext("bedroom", polygon, openings)))
+    expected = [sorted(row, reverse=True) for row in (free, before_windows)]
+    np.testing.assert_allclose(found, expected, atol=1e-5)
 
 
 def test_the_fit_is_the_same_every_time(rooms):

@@ -5,12 +5,15 @@ import numpy as np
 import pytest
 import torch
 
+from pipeline.diffusion.batch import room_batch
 from pipeline.diffusion.checkpoint import Header, build_inventory, build_net, save_weights
-from pipeline.diffusion.context import CategoryBounds
+from pipeline.diffusion.context import CategoryBounds, floor_tokens
+from pipeline.diffusion.guidance import Guidance
 from pipeline.diffusion.sampling import Sampler
+from pipeline.diffusion.schedule import lambda_of
 from pipeline.diffusion.settings import ModelSettings, SampleSettings
 from pipeline.errors import ContentError
-from tests.diffusion.small_world import LAYOUTS, make_context
+from tests.diffusion.small_world import CLASSES, LAYOUTS, make_context
 
 FEW = {"evaluations": 6, "batch": 16}
 
@@ -166,3 +169,34 @@ def test_sampling_leaves_torch_s_threads_as_they_were(weights):
     before = torch.get_num_threads()
     sampler(weights).sample_rooms([make_context(0)], [(0, 0, 0)])
     assert torch.get_num_threads() == before
+
+
+class Sizes(Shelf):
+    """A library with everything in widths of 10 cm steps, the nearest that is no wider than what is asked for."""
+
+    def lookup(self, tastes, categories, positions, sizes, latents):
+        placed = np.maximum(np.floor(sizes * 10 + 1e-6) / 10, 0.2)
+        return placed, np.full((*sizes.shape[:2], 1, 2, 3), np.nan, np.float32)
+
+
+def test_what_has_no_room_between_others_gets_a_smaller_asset(weights, norm):
+    """Three units of 0.9 m in a row of 2.4 m: pushing shares the overlap out, smaller units fit; a room without such a row keeps its own."""
+    room = replace(make_context(0), polygon=np.array([[0, 0], [2.4, 0], [2.4, 2.5], [0, 2.5]]), openings=())
+    wide = replace(room, polygon=np.array([[0, 0], [4.8, 0], [4.8, 2.5], [0, 2.5]]))
+    s = sampler(weights, Sizes())
+    codec, classes = s.net.codec, torch.full((2, 3), CLASSES.index("wardrobe"))
+    rooms = room_batch([floor_tokens(room), floor_tokens(wide)], [0, 0], [2.7, 2.7])
+    tucked = torch.zeros(2, 3, 3, dtype=torch.bool)
+    opens = torch.zeros(len(norm.classes) + 1, dtype=torch.bool)
+    guidance = Guidance(rooms, [None, None], classes, Sizes(), opens, tucked, s.settings)
+    metric = torch.zeros(2, 3, 40)
+    metric[..., 0] = torch.tensor([[-0.75, 0.0, 0.75], [-1.2, 0.0, 1.2]])
+    metric[..., 1], metric[..., 3:6], metric[..., 6] = 0.5, torch.tensor([0.9, 0.5, 2.0]), 1.0
+    x0 = (metric - codec.mean[classes]) / codec.scale[classes]
+    found = codec.metric(guidance.step(codec, x0, lambda_of(1.0)), classes)
+    left, right = found[0, :, 0] - found[0, :, 3] / 2, found[0, :, 0] + found[0, :, 3] / 2
+    assert float(found[0, :, 3].sum()) <= 2.4 + 1e-3
+    assert (right[:-1] - left[1:]).max() < 0.02
+    assert left.min() > -1.22
+    assert right.max() < 1.22
+    torch.testing.assert_close(found[1, :, 3], metric[1, :, 3])
