@@ -1,8 +1,9 @@
 import math
+from unittest import mock
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from pipeline.geometry.kinematics import sweep_box
@@ -37,13 +38,15 @@ def test_nothing_hangs_on_where_the_room_lies(seed, angle, dx, dy):
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10**6))
+@example(452)  # a corner of 6 mm, less than EPSILON of either box
 def test_prisms_collide_only_where_boxes_do_and_order_does_not_matter(seed):
     rows = random_rows(seed)
     boxes, prisms = collision.bbox_hits(rows), collision.prism_hits(rows, LIBRARY)
     # The chest's handle stands out of its box by 3 cm, so a hit there needs no box.
     chests = np.array([r["asset_id"] == "chest" for r in rows])
     if not prisms[chests].any():
-        assert np.all(boxes[prisms])
+        with mock.patch.object(collision, "EPSILON", 0.0):
+            assert np.all(collision.bbox_hits(rows)[prisms])
     assert np.array_equal(collision.bbox_hits(rows[::-1])[::-1], boxes)
     assert np.array_equal(collision.prism_hits(rows[::-1], LIBRARY)[::-1], prisms)
 
