@@ -8,7 +8,7 @@ the step with it; a later step can then bring back what the guidance has torn ap
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import torch
@@ -244,19 +244,28 @@ class Guidance:
         excess = 2 * articulation_gradient(codec, x0, self.classes, sweeps, self.rooms, self.tucked)[..., SIZE].clamp_min(0)
         excess[..., 2] = 0
         pressed = excess.amax(-1) > PRESSED
-        if not bool(pressed.any()):
+        rows = torch.nonzero(pressed.any(-1))[:, 0]
+        if not len(rows):
             return x0
+        tastes = [self.tastes[i] for i in rows.tolist()]
+        few = replace(self, rooms=self.rooms.rows(rows), tastes=tastes, classes=self.classes[rows], tucked=self.tucked[rows])
+        excess = torch.where(pressed[rows][..., None], excess[rows], 0.0)
+        moved = x0.clone()
+        moved[rows] = few.shrunk(codec, x0[rows], None if sweeps is None else sweeps[rows], excess)
+        return moved
+
+    def shrunk(self, codec: Codec, x0: Tensor, sweeps: Tensor | None, excess: Tensor) -> Tensor:
+        """Return x0 with assets smaller by `excess` (B, N, 3) [m], as far as there are any, and pushed apart."""
         asked = x0.clone()
-        asked[..., SIZE] -= torch.where(pressed[..., None], excess, 0.0) / codec.scale[self.classes, SIZE]
+        asked[..., SIZE] -= excess / codec.scale[self.classes, SIZE]
         size, others = self._looked_up(codec, asked)
         area = codec.metric(x0[..., : SIZE.stop], self.classes)[..., 3:5].prod(-1)
-        smaller = pressed & (size[..., :2].prod(-1) < area - 1e-4)
+        smaller = (excess > 0).any(-1) & (size[..., :2].prod(-1) < area - 1e-4)
         moved = x0.clone()
         moved[..., : SIZE.stop] += torch.where(smaller[..., None], size_shift(codec, x0, self.classes, size), 0.0)
         if sweeps is not None and others is not None:
             sweeps = torch.where(smaller[..., None, None, None], others, sweeps)
-        again = smaller.any(-1)[:, None, None]  # a room does not know who shares its batch
-        return torch.where(again, self._descended(codec, moved, sweeps), x0)
+        return self._descended(codec, moved, sweeps)
 
     def _looked_up(self, codec: Codec, x0: Tensor) -> tuple[Tensor, Tensor | None]:
         """Ask the library for each object's asset: its size (B, N, 3) [m] and its sweeps (B, N, K, 2, 3) [m]."""
