@@ -268,9 +268,8 @@ def _levels(state: Reading) -> None:
     """Put zones, and what is spoken of as the rest, on their storey."""
     rooms, said = state.inventory.rooms, {e.first for e in state.levels}
     if all(r.level for r in rooms):
-        for (
-            room
-        ) in rooms:  # "front room, kitchen, two bedrooms and a bathroom above": not all of the list, but what stands next to the word
+        # "front room, kitchen, two bedrooms and a bathroom above": not all of the list, but what stands next to the word
+        for room in rooms:
             next_to = room.span is not None and room.span[1] in said
             room.level = None if room.type in GROUND and not next_to else room.level
     for name, level in sorted(state.heights.items(), key=lambda h: h[0] == "*"):

@@ -95,10 +95,12 @@ def sentences_of(tokens: Sequence[Token]) -> Iterator[list[Token]]:
     sentence: list[Token] = []
     for k, token in enumerate(tokens):
         sentence.append(token)
-        ahead = next((m for m in tokens[k + 1 :] if m.kind not in {"fill", "comma"}), None)
-        if token.kind in ENDS and ahead is not None and ahead.kind == "fix":
+        if token.kind not in ENDS:
+            continue
+        ahead = next((m.kind for m in tokens[k + 1 :] if m.kind not in {"fill", "comma"}), "")
+        if ahead == "fix":
             sentence[-1] = replace(token, kind="comma")
-        elif token.kind in ENDS:
+        else:
             yield sentence
             sentence = []
     if sentence:
