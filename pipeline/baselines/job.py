@@ -49,7 +49,7 @@ def open_job(root: Path, settings: BaselineSettings) -> Job:
     objects = furniture(sets.train, len(words.names), settings.slots)
     rooms = outlines([e.floor for e in sets.train], [e.layout for e in sets.train], settings.points)
     weights, scaling = torch.from_numpy(layout_weights(sets.train)), Scaling.of(objects, words.names)
-    return Job(rooms, objects, weights, scaling, sets, words.layout_types, openable_classes(words.names)[:-1])
+    return Job(rooms, objects, weights, scaling, sets, words.layout_types, torch.from_numpy(openable_classes(words.names)[:-1]))
 
 
 class Step(NamedTuple):

@@ -5,10 +5,9 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
+from pipeline.diffusion.articulated_collision import Furniture, Obstacles, articulated_collision
 from pipeline.diffusion.batch import Objects, RoomBatch
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
-from pipeline.diffusion.guidance import articulated_collision
-from pipeline.diffusion.relations import boxes_of
 from pipeline.diffusion.schedule import FIRST, LAST, alpha_sigma, lambda_of
 from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import TrainSettings
@@ -44,12 +43,11 @@ def draw(rng: torch.Generator, batch: int, slots: int) -> Draw:
 
 def constraint_descent(x0: Tensor, classes: Tensor, codec: Codec, rooms: RoomBatch, sweeps: Tensor) -> Tensor:
     """Return g = -grad phi_articoll (B, N, 40) at clean channels x0; only position x, y and yaw have any."""
-    leaf = x0[..., : YAW.stop].detach().requires_grad_()
-    with torch.enable_grad():
-        phi = articulated_collision(boxes_of(codec.metric(leaf, classes)), classes < codec.classes, sweeps, rooms).sum()
-        (gradient,) = torch.autograd.grad(phi, leaf)
+    boxes = codec.metric(x0[..., : YAW.stop], classes).detach().double().cpu().numpy()
+    furniture = Furniture.of((classes < codec.classes).cpu().numpy(), sweeps.double().cpu().numpy())
+    gradient = torch.from_numpy(articulated_collision(boxes, furniture, Obstacles.of(rooms))[1]).to(x0)
     g = torch.zeros_like(x0)
-    g[..., :2], g[..., YAW] = -gradient[..., :2], -gradient[..., YAW]
+    g[..., :2], g[..., YAW] = -gradient[..., :2] * codec.reach, -gradient[..., YAW]
     return g
 
 

@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from pipeline import seeds, taxonomy
+from pipeline.arrays import Bools, Floats, Ints
 from pipeline.diffusion.batch import RoomBatch, room_batch
 from pipeline.diffusion.checkpoint import Header, load_weights
 from pipeline.diffusion.codec import CHANNELS
 from pipeline.diffusion.context import Floor, Library, Proposal, RoomContext, floor_tokens
-from pipeline.diffusion.guidance import Guidance
+from pipeline.diffusion.guidance import PRESSED, Guidance
 from pipeline.diffusion.inventory import DRAWS, Ask, Inventory, draw_inventories, room_features
 from pipeline.diffusion.schedule import denoise, levels, paper_levels
 from pipeline.diffusion.set_transformer import FEW, SetTransformer
@@ -94,36 +95,45 @@ class Sampler:
     ) -> list[list[Proposal]]:
         """Arrange what rooms hold: `inventories` are class indices (n,) per room. Proposals come in that order."""
         proposals: list[list[Proposal]] = [[] for _ in rooms]
+        pressed = np.full(len(rooms), np.inf)
         layouts = self._layouts(rooms)
+        pending = [i for i, held in enumerate(inventories) if len(held)]
         with one_thread(), torch.no_grad():
-            for slots, tokens, part in self._batches(floors, inventories):
-                conditioning = room_batch([floors[i] for i in part], [layouts[i] for i in part], [rooms[i].height for i in part])
-                classes = np.full((len(part), slots), len(self.header.norm.classes))
-                for row, i in enumerate(part):
-                    classes[row, : len(inventories[i])] = inventories[i]
-                labels = torch.from_numpy(classes).to(self.net.codec.mean.device)
-                clean = self._batch(conditioning.first(tokens), labels, [keys[i] for i in part], [rooms[i].taste for i in part])
-                for i, x0, mine in zip(part, clean, labels, strict=True):
-                    proposals[i] = self.net.codec.proposals(x0, mine, rooms[i])
+            for draw in range(1 + self.settings.redraws):
+                for slots, tokens, part in self._batches(pending, floors, inventories):
+                    conditioning = room_batch([floors[i] for i in part], [layouts[i] for i in part], [rooms[i].height for i in part])
+                    classes = np.full((len(part), slots), len(self.header.norm.classes))
+                    for row, i in enumerate(part):
+                        classes[row, : len(inventories[i])] = inventories[i]
+                    labels = torch.from_numpy(classes).to(self.net.codec.mean.device)
+                    drawn = [(*keys[i], draw) if draw else keys[i] for i in part]
+                    clean, depths = self._batch(conditioning.first(tokens), labels, drawn, [rooms[i].taste for i in part])
+                    for i, x0, mine, depth in zip(part, clean, labels, depths, strict=True):
+                        if depth < pressed[i]:
+                            proposals[i], pressed[i] = self.net.codec.proposals(x0, mine, rooms[i]), depth
+                pending = [i for i in pending if pressed[i] > PRESSED]
         return proposals
 
-    def _batches(self, floors: Sequence[Floor], inventories: Sequence[NDArray[np.int64]]) -> Iterator[tuple[int, int, list[int]]]:
-        """Cut rooms into batches of one shape: yields slots, floor tokens, and the indices of the rooms. A room's shape is its own."""
+    def _batches(
+        self, chosen: Sequence[int], floors: Sequence[Floor], inventories: Sequence[NDArray[np.int64]]
+    ) -> Iterator[tuple[int, int, list[int]]]:
+        """Cut the `chosen` rooms into batches of one shape: yields slots, floor tokens, and the indices of the rooms. A room's shape is its own."""
         slots = np.array(SLOTS)[np.searchsorted(SLOTS, [len(h) for h in inventories])]
         tokens = np.array(TOKENS)[np.searchsorted(TOKENS, [int(f.mask.sum()) for f in floors])]
-        for shape in sorted({(int(s), int(t)) for s, t, h in zip(slots, tokens, inventories, strict=True) if len(h)}):
-            alike = [i for i, h in enumerate(inventories) if len(h) and (slots[i], tokens[i]) == shape]
+        for shape in sorted({(int(slots[i]), int(tokens[i])) for i in chosen}):
+            alike = [i for i in chosen if (slots[i], tokens[i]) == shape]
             for start in range(0, len(alike), self.settings.batch):
                 yield *shape, alike[start : start + self.settings.batch]
 
-    def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[Key], tastes: Sequence[Any]) -> Tensor:
-        """Sample one padded batch: x0 (batch, slots, 40) of objects of `classes` (batch, slots), on their device."""
+    def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[tuple[int, ...]], tastes: Sequence[Any]) -> tuple[Tensor, Floats]:
+        """Sample one padded batch of objects of `classes` (batch, slots): x0 (batch, slots, 40) on their device, and how deep the worst overlap of each room is [m]."""
         device = classes.device
         rooms = rooms.to(device)
         code, ones = self.net.floor_code(rooms, classes), torch.ones(len(keys), device=device)
         names = self.header.norm.classes
-        opens, tucks = openable_classes(names).to(device), tuck_roles(names).to(device)[classes]
-        guidance = Guidance(rooms, tastes, classes, self.library, opens, tucks[:, :, None] + tucks[:, None] == 3, self.settings)
+        guidance = Guidance.of(
+            self.net.codec, rooms, tastes, classes, self.library, openable_classes(names), tuck_roles(names), self.settings
+        )
 
         before: Tensor | None = None
 
@@ -140,7 +150,8 @@ class Sampler:
             return torch.from_numpy(np.stack([rng.standard_normal(shape, np.float32) for rng in rngs])).to(device)
 
         count = self.settings.evaluations
-        return denoise(expect, partial(guidance.step, self.net.codec), noise, levels(count) if count else paper_levels(), self.settings.eta)
+        x0 = denoise(expect, partial(guidance.step, self.net.codec), noise, levels(count) if count else paper_levels(), self.settings.eta)
+        return x0, guidance.pressure(self.net.codec, x0)
 
     def _layouts(self, rooms: Sequence[RoomContext]) -> list[int]:
         """Return the indices of the rooms' types."""
@@ -150,16 +161,16 @@ class Sampler:
         return [self.header.layouts.index(r.layout_type) for r in rooms]
 
 
-def tuck_roles(classes: Sequence[str]) -> Tensor:
+def tuck_roles(classes: Sequence[str]) -> Ints:
     """Return by class (C + 1,), the last one empty: 1 for what stands under tables, 2 for tables, 0 for the rest."""
     known = taxonomy.load().categories
-    return torch.tensor([known[name].tuck_role for name in classes] + [0])
+    return np.array([known[name].tuck_role for name in classes] + [0])
 
 
-def openable_classes(classes: Sequence[str]) -> Tensor:
+def openable_classes(classes: Sequence[str]) -> Bools:
     """Return which classes (C + 1,) can come from PartNet: the lookup by class of the paper's heuristic; padding cannot."""
     known = taxonomy.load().categories
-    return torch.tensor([*(bool(known[c].names.partnet) if c in known else False for c in classes), False])
+    return np.array([*(bool(known[c].names.partnet) if c in known else False for c in classes), False])
 
 
 @contextmanager

@@ -85,6 +85,7 @@ class SampleSettings:
     articulation_scale: float = 0.5  # step along the descent of phi_articoll [m per m]
     articulation_below: float = 10.0
     articulation_steps: int = 10  # descents at each of these levels
+    redraws: int = 2  # times a room is drawn again whose things are still pressed; the draw that is pressed least is kept
     turn_scale: float = 0.1  # step of the yaw, per step of the position
     clip: float = 0.15  # largest move in one guided step [m]
     snap_below: float = 100.0  # from this level on objects take the size of the asset that they would retrieve

@@ -1,9 +1,9 @@
 import numpy as np
 import torch
 
+from pipeline.diffusion.articulated_collision import Furniture, Obstacles, articulated_collision
 from pipeline.diffusion.batch import Objects, bucket_of, collate, moved_objects, moved_rooms, reflections
 from pipeline.diffusion.codec import Codec
-from pipeline.diffusion.guidance import articulated_collision
 from pipeline.diffusion.relations import boxes_of, pair_relations, wall_relations
 from pipeline.diffusion.set_transformer import polygon_area
 from tests.diffusion.small_world import make_context
@@ -54,9 +54,13 @@ def test_a_moved_room_is_the_same_room(examples, norm):
     assert (polygon_area(rooms) > 0).all()
     occupied = objects.classes < codec.classes
     here, there = (boxes_of(codec.metric(o.channels, objects.classes)) for o in (objects, shifted))
-    before = articulated_collision(here, occupied, objects.sweeps, rooms)
-    after = articulated_collision(there, occupied, shifted.sweeps, moved)
-    torch.testing.assert_close(before, after, atol=1e-4, rtol=1e-4)
+    before, after = (
+        articulated_collision(
+            codec.metric(o.channels, o.classes)[..., :8].numpy(), Furniture.of(occupied.numpy(), o.sweeps.double().numpy()), Obstacles.of(r)
+        )[0]
+        for o, r in ((objects, rooms), (shifted, moved))
+    )
+    np.testing.assert_allclose(before, after, atol=1e-4, rtol=1e-4)
     gaps, distances = slice(8, 16), slice(0, 4)
     mask = occupied[:, :, None] & occupied[:, None]
     blur = torch.ones(len(rooms), 2)

@@ -8,7 +8,7 @@ import torch
 from pipeline.diffusion.batch import room_batch
 from pipeline.diffusion.checkpoint import Header, build_inventory, build_net, save_weights
 from pipeline.diffusion.context import CategoryBounds, floor_tokens
-from pipeline.diffusion.guidance import Guidance
+from pipeline.diffusion.guidance import PRESSED, Guidance
 from pipeline.diffusion.sampling import Sampler
 from pipeline.diffusion.schedule import lambda_of
 from pipeline.diffusion.settings import ModelSettings, SampleSettings
@@ -186,9 +186,8 @@ def test_what_has_no_room_between_others_gets_a_smaller_asset(weights, norm):
     s = sampler(weights, Sizes())
     codec, classes = s.net.codec, torch.full((2, 3), CLASSES.index("wardrobe"))
     rooms = room_batch([floor_tokens(room), floor_tokens(wide)], [0, 0], [2.7, 2.7])
-    tucked = torch.zeros(2, 3, 3, dtype=torch.bool)
-    opens = torch.zeros(len(norm.classes) + 1, dtype=torch.bool)
-    guidance = Guidance(rooms, [None, None], classes, Sizes(), opens, tucked, s.settings)
+    nothing = np.zeros(len(norm.classes) + 1, int)
+    guidance = Guidance.of(codec, rooms, [None, None], classes, Sizes(), nothing > 0, nothing, s.settings)
     metric = torch.zeros(2, 3, 40)
     metric[..., 0] = torch.tensor([[-0.75, 0.0, 0.75], [-1.2, 0.0, 1.2]])
     metric[..., 1], metric[..., 3:6], metric[..., 6] = 0.5, torch.tensor([0.9, 0.5, 2.0]), 1.0
@@ -200,3 +199,26 @@ def test_what_has_no_room_between_others_gets_a_smaller_asset(weights, norm):
     assert left.min() > -1.22
     assert right.max() < 1.22
     torch.testing.assert_close(found[1, :, 3], metric[1, :, 3])
+
+
+def test_a_room_that_stays_pressed_is_drawn_again_and_its_least_pressed_draw_is_kept(weights, monkeypatch):
+    rooms = [make_context(k % 4, n_target=3 + k) for k in range(8)]
+    keys = [(k, 0, 0) for k in range(len(rooms))]
+    depths = {}
+    batch = Sampler._batch
+
+    def noted(self, conditioning, classes, drawn, tastes):
+        clean, pressed = batch(self, conditioning, classes, drawn, tastes)
+        depths.update(zip(drawn, pressed.tolist(), strict=True))
+        return clean, pressed
+
+    monkeypatch.setattr(Sampler, "_batch", noted)
+    once, again = (sampler(weights, Shelf(), redraws=n).sample_rooms(rooms, keys) for n in (0, 2))
+    drawn = {key: [depths[k] for k in ((*key, 1), (*key, 2)) if k in depths] for key in keys}
+    assert any(depths[key] <= PRESSED for key in keys)
+    assert any(depths[key] > PRESSED for key in keys)
+    for key, first, last in zip(keys, once, again, strict=True):
+        assert bool(drawn[key]) == (depths[key] > PRESSED)
+        better = min(drawn[key], default=np.inf) < depths[key]
+        assert better != all(np.array_equal(a.position, b.position) for a, b in zip(first, last, strict=True))
+        assert [a.category for a in first] == [b.category for b in last]

@@ -7,6 +7,7 @@ import torch
 from safetensors import safe_open
 
 from pipeline import taxonomy
+from pipeline.diffusion.articulated_collision import Furniture, Obstacles, articulated_collision
 from pipeline.diffusion.batch import collate
 from pipeline.diffusion.checkpoint import Header, build_inventory, load_weights, require_vocabulary, save_weights
 from pipeline.diffusion.codec import Codec
@@ -215,17 +216,15 @@ def test_the_constraint_term_of_eq_1_has_a_switch_and_a_scale(header, data):
 
 
 def test_g_points_down_the_penalty(examples, norm):
-    from pipeline.diffusion.guidance import articulated_collision
-    from pipeline.diffusion.relations import boxes_of
-
     codec = Codec(norm)
     rooms, objects = collate(examples, codec, 12)
-    occupied = objects.classes < codec.classes
+    occupied = (objects.classes < codec.classes).numpy()
+    furniture, obstacles = Furniture.of(occupied, objects.sweeps.double().numpy()), Obstacles.of(rooms)
     x = objects.channels.clone()
     x[..., :2] *= 0.5  # squeeze the furniture together
     g = constraint_descent(x, objects.classes, codec, rooms, objects.sweeps)
     before, after = (
-        articulated_collision(boxes_of(codec.metric(v, objects.classes)), occupied, objects.sweeps, rooms).sum() for v in (x, x + 0.05 * g)
+        articulated_collision(codec.metric(v, objects.classes)[..., :8].numpy(), furniture, obstacles)[0].sum() for v in (x, x + 0.05 * g)
     )
     assert after < before
     assert g[..., 2:6].abs().max() == 0
