@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-BENCHMARKS = [p for folder in (".", "engines", "ablations") for p in sorted((ROOT / "benchmarks" / folder).glob("*.py"))]
+BENCHMARKS = [p for folder in (".", "engines") for p in sorted((ROOT / "benchmarks" / folder).glob("*.py"))]
 ENGINES = ("mujoco", "newton", "warp", "ovphysx", "ovstage", "sapien", "yourdfpy", "usd_validation_nvidia")  # each in a Python of its own
 
 

@@ -11,7 +11,7 @@ import yaml
 ROOT = Path(__file__).parents[2]
 STAGES = ("corpus", "preprocess", "encode", "train", "sample", "postopt", "metrics")
 SMALL = {
-    "corpus": {"houses": 14, "models": 0.25},
+    "corpus": {"houses": 14, "models": 0.12},
     "preprocess": {"workers": 1},
     "encode": {"start": "scratch", "steps": 3, "points": 256, "train_points": 128, "decoded_points": 64, "width": 16, "threads": 1},
     "train": {
