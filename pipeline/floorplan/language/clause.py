@@ -291,14 +291,13 @@ def compare(c: Clause, k: int, e: Token) -> int:
         return k + 1
     right, j = c.after(k + 1, "cmp", left)
     if not right and len(c.run) > 1:  # "a kitchen and a living room larger than the kitchen"
-        left = c.run[-1].ids
-        right, j = c.after(k + 1, "cmp", left)
+        left, (right, j) = c.run[-1].ids, c.after(k + 1, "cmp", c.run[-1].ids)
     behind = c.near(j)
     if c.factor is None and behind is not None and behind.kind == "factor":  # "客厅要比厨房大一倍"
         c.factor, j = behind, j + 1
     value = (c.factor.number or 1.0) if c.factor else 1.0
     if left and right:
-        for said in filter(None, (e, c.factor)):
+        for said in filter(None, (e, c.factor, behind if behind is not None and behind.kind == "size" else None)):
             c.state.understood(said.first, said.last)
         if e.value == "equal" and c.factor is None and c.negative is None:
             c.state.say("area_equal", (*left, *right), (), e, LIKE)

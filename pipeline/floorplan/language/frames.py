@@ -100,7 +100,7 @@ def correct(tokens: Sequence[Token], rethought: Collection[str]) -> list[Token]:
     """Put a count that takes back one of the same rooms in its place: "three bedrooms and two baths. No, wait, four bedrooms"."""
     said = list(tokens)
     for k, fix in enumerate(said):
-        found = fix.kind == "fix" or fix.text in rethought
+        found = fix.kind == "fix" or (fix.text in rethought and not (k and said[k - 1].kind == "join"))
         end = next((j for j in range(k + 1, len(said)) if said[j].kind in ENDS), len(said)) if found else 0
         for j in (j for j in range(k + 1, end) if said[j].kind == "num" and (said[j - 1].kind, said[j - 1].value) != ("join", "and")):
             room = _counted(said, j)
@@ -113,7 +113,7 @@ def correct(tokens: Sequence[Token], rethought: Collection[str]) -> list[Token]:
 
 def _counted(tokens: Sequence[Token], k: int) -> str:
     """Return which rooms the number at k counts."""
-    return next((m.value for m in tokens[k + 1 :] if m.kind not in LEADING - {"num", "det"}), "") if phrase(tokens, k) else ""
+    return next((m.value for m in tokens[k : phrase(tokens, k)] if m.kind in HEADS), "")
 
 
 def _names(token: Token, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
