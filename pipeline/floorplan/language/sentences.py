@@ -142,14 +142,13 @@ def _det(c: Clause, k: int, e: Token) -> None:
     """Read "both", "each", "all", "the other" where no room follows."""
     before, ahead = c.near(k - 1), c.near(k + 1)
     kind = ahead.kind if ahead is not None else ""
-    alone = before is not None and before.kind == "np" and len(c.latest) == 1 and not c.objects
     again = bool(c.run) and bool(c.run[-1].det & {"all", "each"}) and before is c.run[-1]  # "..., 所有卧室都从走廊进出"
     if e.value == "all" and kind != "np" and (again or len(c.run) > 1):  # "kitchen, two bedrooms, bath - all off the hall"
         c.subject = c.run[-1].ids if again else ids_of(c.run)
         c.stands_for(e, c.subject)
     elif e.value == "each" and c.ends(k + 1) and before is not None and before.kind in {"word", "comma"}:  # "climbs into every cupboard"
         c.state.understood(e.first, e.last)
-    elif e.value == "each" and c.ends(k + 1) and alone:
+    elif e.value == "each" and c.ends(k + 1) and before is not None and before.kind == "np" and len(c.latest) == 1 and not c.objects:
         return  # "a bathroom for each": of whom is not said
     elif e.value == "other" and kind in {"level", "verb"} and not any(r.open_slot for r in c.stock.of(c.state.parted)):
         c.push(k, e, ("*",))
