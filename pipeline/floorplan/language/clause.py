@@ -258,12 +258,11 @@ class Clause:
         gives = ahead is not None and ahead.kind == "cue" and (ahead.value not in {"except", "has"} or self.says(ahead, "having"))
         if gives or (ahead is not None and ahead.kind in {"verb", "cmp", "neg", "factor"}):
             return False  # the phrase is the subject of a statement of its own
-        if cue == "leads" and joined == "comma":
-            halls = bool(self.types(self.latest or self.subject) & HALLS)
-            if self.relative and e.introduces and first.definite and not halls:
-                return False  # "a living room that opens to the kitchen, one bedroom and one bath"
-            if e.number and not first.number and not any(x.kind == "and" for x in self.sentence[k:]):
-                return False
+        halls = bool(self.types(self.latest or self.subject) & HALLS)
+        if cue in {"leads", "door"} and self.relative and e.introduces and not first.introduces and not halls:
+            return False  # "a living room that opens to the kitchen, one bedroom and one bath"
+        if cue == "leads" and joined == "comma" and e.number and not first.number and not any(x.kind == "and" for x in self.sentence[k:]):
+            return False
         if cue in WIDE:
             return cue != "between"
         if joined == "comma":
@@ -291,12 +290,14 @@ def compare(c: Clause, k: int, e: Token) -> int:
         c.state.say("area_equal", named_rooms(rooms if len(rooms) > 1 else c.subject), (), e, LIKE)
         return k + 1
     right, j = c.after(k + 1, "cmp", left)
+    if not right and len(c.run) > 1:  # "a kitchen and a living room larger than the kitchen"
+        left, (right, j) = c.run[-1].ids, c.after(k + 1, "cmp", c.run[-1].ids)
     behind = c.near(j)
     if c.factor is None and behind is not None and behind.kind == "factor":  # "客厅要比厨房大一倍"
         c.factor, j = behind, j + 1
     value = (c.factor.number or 1.0) if c.factor else 1.0
     if left and right:
-        for said in filter(None, (e, c.factor)):
+        for said in filter(None, (e, c.factor, behind if behind is not None and behind.kind == "size" else None)):
             c.state.understood(said.first, said.last)
         if e.value == "equal" and c.factor is None and c.negative is None:
             c.state.say("area_equal", (*left, *right), (), e, LIKE)
@@ -306,7 +307,8 @@ def compare(c: Clause, k: int, e: Token) -> int:
         for x in a:
             c.state.say("area_order", (x,), tuple(i for i in b if i != x), e, 1.0 / value if value < 1.0 else value)
         c.deny()
-    c.factor, c.latest, c.run = None, right, []
+    size = c.ahead(j, "comma", "verb")  # "the kitchen is larger than the bath, about 18 m²"
+    c.factor, c.latest, c.run = None, left if size is not None and size.kind == "amount" else right, []
     return max(j, k + 1)
 
 

@@ -11,7 +11,7 @@ between them is consumed. No frame belongs to a language: word order and words d
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ CLOSERS = ENDS | {"comma", "close", "but", "open", "colon", "bullet", "dash"}
 SEPARATORS = {"comma", "join", "slash"}
 TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of each room of a list: "one to the hall, one to the kitchen"
 TRAILING = {("num", "figure"), ("amount", "area"), ("det", "own")}  # behind a head
+BARE = SKIPPED | {"comma", "verb", "bound"}  # between "actually" and the count that it takes back
 MOST_SKIPPED = 3
 HOMES = {"large": 35.0, "vast": 60.0}  # [m2] from here on an area is no bedroom's, and no living room's
 ROOMY = 8.0  # [m2] a figure behind a room that is an area, and no count or name
@@ -84,7 +85,7 @@ def apply_frames(tokens: Sequence[Token], words: Words) -> list[Token]:
     """Return the tokens with every frame that fits read."""
     signs = words.lexicon.signs
     rewritten: list[Token] = []
-    for sentence in sentences_of(tokens):
+    for sentence in sentences_of(correct(tokens, words.lexicon.sign("rethought"))):
         said, names = sentence, [_names(m, signs) for m in sentence]
         for frame in frames():
             here = frozenset().union(*names)
@@ -93,6 +94,26 @@ def apply_frames(tokens: Sequence[Token], words: Words) -> list[Token]:
                 names = [_names(m, signs) for m in said] if changed else names
         rewritten += said
     return rewritten
+
+
+def correct(tokens: Sequence[Token], rethought: Collection[str]) -> list[Token]:
+    """Put a count that takes back one of the same rooms in its place: "three bedrooms and two baths. No, wait, four bedrooms"."""
+    said = list(tokens)
+    for k, fix in enumerate(said):
+        found = fix.kind == "fix" or (fix.text in rethought and not (k and said[k - 1].kind == "join"))
+        end = next((j for j in range(k + 1, len(said)) if said[j].kind in ENDS), len(said)) if found else 0
+        for j in (j for j in range(k + 1, end) if said[j].kind == "num" and (said[j - 1].kind, said[j - 1].value) != ("join", "and")):
+            room = _counted(said, j)
+            old = next((i for i in range(k - 1, -1, -1) if room and said[i].kind == "num" and _counted(said, i) == room), None)
+            if old is not None and (fix.kind == "fix" or all(m.kind in BARE for m in said[k + 1 : j])):
+                said[old] = replace(said[old], number=said[j].number)
+                said[j] = replace(said[j], kind="det", value="all", number=0.0)
+    return said
+
+
+def _counted(tokens: Sequence[Token], k: int) -> str:
+    """Return which rooms the number at k counts."""
+    return next((m.value for m in tokens[k : phrase(tokens, k)] if m.kind in HEADS), "")
 
 
 def _names(token: Token, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:

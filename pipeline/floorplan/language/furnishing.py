@@ -63,18 +63,18 @@ def stemmed(form: str) -> tuple[str, ...]:
 
 
 @functools.cache
-def _phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool], ...]]:
-    """Return by first stem: (stems, kind, name, whether an owner is needed), the longest first."""
+def _phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool, tuple[str, ...]], ...]]:
+    """Return by first stem: (stems, kind, name, whether an owner is needed, words), the longest first."""
     data = lexicon()
     listed = [("name", name, form) for name, forms in data["names"].items() for some in forms.values() for form in some]
     listed += [("small", form, form) for form in data["small"]]
     listed += [("look", name, form) for name, some in data["styles"].items() for form in some]
     listed += [(kind, str(form), str(form)) for kind, some in data["words"].items() for form in some if form != "-"]
     listed += [(kind, str(name), form) for kind in ("owner", "fraction") for name, some in data[f"{kind}s"].items() for form in some]
-    table: dict[str, list[tuple[tuple[str, ...], str, str, bool]]] = {}
+    table: dict[str, list[tuple[tuple[str, ...], str, str, bool, tuple[str, ...]]]] = {}
     for kind, name, form in listed:
         stems = stemmed(form)
-        table.setdefault(stems[0], []).append((stems, kind, name, form.startswith("@")))
+        table.setdefault(stems[0], []).append((stems, kind, name, form.startswith("@"), words(form.removeprefix("@"))))
     return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
 
 
@@ -123,16 +123,18 @@ class Scan:
         self.numbers |= {written[m.first].start: (written[m.last - 1].end, min(m.number, MOST)) for m in tokens if m.kind == "num"}
         self.counted = {written[m.first].start for m in tokens if (m.kind, m.value) == ("unit", "rooms")}  # "trois pièces" are rooms
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
-        self.there = [
+        spelt = tuple(w.text for w in self.words)
+        found = (
             [
-                (len(p), kind, name, owned)
-                for p, kind, name, owned in _phrases().get(stem, ())
+                (len(p), kind, name, owned, spelt[k : k + len(p)] != form)
+                for p, kind, name, owned, form in _phrases().get(stem, ())
                 if tuple(stems[k : k + len(p)]) == p
                 and (len(p) > 1 or self.words[k].text not in storeys)
                 and not (kind == "name" and len(p) == 1 and self._other(k, name))
             ]
             for k, stem in enumerate(stems)
-        ]
+        )
+        self.there = [[p[:4] for p in sorted(here, key=lambda p: (-p[0], p[4]))] for here in found]  # "sillón" is no "silla"
         self.stops = [-1, *(k for k, w in enumerate(self.words) if w.text in STOPS)]
         self.negated = False  # "no TV or armchairs": the negation goes on
 

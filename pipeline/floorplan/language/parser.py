@@ -302,8 +302,10 @@ class _Place:
     def __init__(self, program: FloorProgram, claims: Sequence[Claim], prompt: str, named: Sequence[Mention]) -> None:
         self.claims, self.prompt, self.named = claims, prompt, named
         self.kinds: Mapping[str, str] = {r.id: r.type for r in program.rooms}
+        self.compared = [{r.a, r.b} for r in program.relations if r.kind == "area_order"]
         self.scan = Scan(prompt)
-        self.elsewhere = -1  # where the last wish ends that went past the room in front of it
+        self.host: tuple[str, ...] = ()
+        self.until = -1  # of the last wish that went past the room in front of it, and where it ends
         self.stops = [-1, *(w.start for w in self.scan.words if w.text in STOPS), len(prompt)]
 
     def _at(self, place: int) -> int:
@@ -332,14 +334,20 @@ class _Place:
         if not before:
             near = after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
             return near if claim.kind != "count" else likely[0] if likely and claim.least else ()
+        lead = self.prompt[before[-1].end : min(c.start for c in self.claims if c.start >= before[-1].end)]
+        if len(before) > 1 and "," in lead and {*before[-2].ids, *before[-1].ids} in self.compared:
+            before = before[:-1]  # "a study smaller than the bedroom, with a desk"
         room, usual = before[-1], self._natural(claim, before[-1])
         if self._dwelling(room) and not (claim.plural and usual):
             return ()  # "a two-bedroom flat with a sofa"; but "with bunk beds"
         joined, barred = self._joined(room.end, claim.start), any(impossible(self.kinds[i], claim.name) for i in room.ids)
-        follows = not usual and self.elsewhere >= 0 and self._joined(self.elsewhere, claim.start)
-        if follows or (barred and "," in self.prompt[room.end : claim.start]):
-            self.elsewhere = claim.end
-            return likely[0] if likely else ()  # "a studio with a bathroom, put a bed and a desk in it"
+        follows = self.until > room.end and self._joined(self.until, claim.start)
+        host = self.host if follows and (not usual or any(self.kinds[i] in natural(claim.name) for i in self.host)) else ()
+        lead = self.prompt[room.end : claim.start] if barred else lead
+        studio = [(i,) for i, kind in self.kinds.items() if kind == "studio_room" and natural(claim.name) != ("kitchen",)]
+        if host or ((likely or studio) and not usual and "," in lead):
+            self.host, self.until = host or (likely or studio)[0], claim.end
+            return self.host  # "a studio with a bathroom, put a bed and a desk in it"
         if usual or (joined and self._led(room, claim)):
             return room.ids
         mine = not joined and not barred

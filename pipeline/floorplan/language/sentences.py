@@ -146,6 +146,8 @@ def _det(c: Clause, k: int, e: Token) -> None:
     if e.value == "all" and kind != "np" and (again or len(c.run) > 1):  # "kitchen, two bedrooms, bath - all off the hall"
         c.subject = c.run[-1].ids if again else ids_of(c.run)
         c.stands_for(e, c.subject)
+    elif e.value == "each" and c.ends(k + 1) and before is not None and before.kind in {"word", "comma"}:  # "climbs into every cupboard"
+        c.state.understood(e.first, e.last)
     elif e.value == "each" and c.ends(k + 1) and before is not None and before.kind == "np" and len(c.latest) == 1 and not c.objects:
         return  # "a bathroom for each": of whom is not said
     elif e.value == "other" and kind in {"level", "verb"} and not any(r.open_slot for r in c.stock.of(c.state.parted)):

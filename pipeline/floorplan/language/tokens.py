@@ -20,6 +20,7 @@ LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a 
 SQUARES = {1.0: (1.0, 8.0), 0.3048: (0.092903, 49.0)}
 BOUNDS = {"least": "least", "or_more": "least", "most": "most", "or_less": "most"}
 ARROWS = {"<->", "->", "=>", "→"}
+MOST_BETWEEN = 12  # tokens between "neither" and "nor"
 
 
 @dataclass(slots=True)
@@ -97,7 +98,7 @@ def sentences_of(tokens: Sequence[Token]) -> Iterator[list[Token]]:
         sentence.append(token)
         if token.kind not in ENDS:
             continue
-        ahead = next((m.kind for m in tokens[k + 1 :] if m.kind not in {"fill", "comma"}), "")
+        ahead = next((m.kind for m in tokens[k + 1 :] if m.kind not in {"fill", "comma", "neg"}), "")
         if ahead == "fix":
             sentence[-1] = replace(token, kind="comma")
         else:
@@ -124,7 +125,7 @@ def segment(words: Words) -> list[Token]:
         token = _token(words, i)
         if token.last > i:
             i = token.last
-            tokens.append(token)
+            tokens += [token] if token.text != "." or tokens[-1:] == [] or tokens[-1].text != "." else []  # "..." is one stop
         else:
             i += 1
     between = ([x.kind for x in tokens[max(k - 1, 0) : k + 2 : 2]] for k in range(len(tokens)))  # "kitchen-diner" is written as one
@@ -145,8 +146,10 @@ def _token(words: Words, i: int) -> Token:  # noqa: PLR0911 - one branch per cas
     if text == "\n":
         return Token("line", "", 0.0, False, i, i + 1, text)
     if text in STOPS:
-        after = words.texts[i + 1] if i + 1 < len(words.texts) else "\n"
-        short = text == "." and i > 0 and words.texts[i - 1] in lex.abbreviations and after != "\n"
+        after = words.prompt[words.written[i + 1].start] if i + 1 < len(words.texts) else "\n"
+        measure = lex.find(words.texts, i - 1) if i else None  # "14 x 16 ft. One bedroom"
+        ends = after == "\n" or (after.isupper() and measure is not None and measure[1].kind == "unit")
+        short = text == "." and i > 0 and words.texts[i - 1] in lex.abbreviations and not ends
         return Token("hyphen" if short else "stop", "", 0.0, False, i, i + 1, text)
     if text in {"-", "–", "—", "~", "="}:
         spaced = i > 0 and words.written[i - 1].end < word.start and i + 1 < len(words.texts) and words.written[i + 1].start > word.end
@@ -215,6 +218,18 @@ def _relabel(tokens: Sequence[Token], words: Words) -> list[Token]:
             relabelled[k] = replace(token, number=next((a.number for a in kids if a.kind == "num"), 0.0))
         elif token.kind == "every" and any(m.kind == "room" and m.text.startswith(token.text.rsplit(" ", 1)[-1]) for m in tokens[:k]):
             relabelled[k] = replace(token, kind="room", value="bedroom", plural=True)  # "todas las habitaciones": so many were counted
+        elif (
+            token.text == "?"
+            and k + 1 < len(tokens)
+            and (tokens[k + 1].kind in {"neg", "needless"} or tokens[k + 1].text in lex.sign("nope"))
+        ):
+            relabelled[k] = replace(token, kind="colon")  # "Garage? No thanks"
+        elif (
+            token.kind == "neg"
+            and token.text in lex.sign("still")
+            and not any(m.kind == "neg" for m in tokens[max(k - MOST_BETWEEN, 0) : k])
+        ):
+            relabelled[k] = replace(token, kind="fill")  # "sonst noch"
         elif token.kind == "home" and k and bedrooms and token.text in lex.sign("study"):
             relabelled[k] = replace(token, kind="room", value="office")
     return relabelled
