@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -30,6 +31,7 @@ from pipeline.errors import ContentError
 Key = tuple[int, int, int]  # home index, room number, attempt
 # Slots and floor tokens that the rooms of a batch are padded to: few shapes, for an evaluation costs more by its operations than by its rooms.
 SLOTS, TOKENS = (6, 12, 24, MOST_SLOTS), (16, 32)
+FEW_SHAPES = (12, 24, MOST_SLOTS), (32,)  # of rooms that are drawn again, which are few
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +102,7 @@ class Sampler:
         pending = [i for i, held in enumerate(inventories) if len(held)]
         with one_thread(), torch.no_grad():
             for draw in range(1 + self.settings.redraws):
-                for slots, tokens, part in self._batches(pending, floors, inventories):
+                for slots, tokens, part in self._batches(pending, floors, inventories, FEW_SHAPES if draw else (SLOTS, TOKENS)):
                     conditioning = room_batch([floors[i] for i in part], [layouts[i] for i in part], [rooms[i].height for i in part])
                     classes = np.full((len(part), slots), len(self.header.norm.classes))
                     for row, i in enumerate(part):
@@ -109,18 +111,18 @@ class Sampler:
                     drawn = [(*keys[i], draw) if draw else keys[i] for i in part]
                     clean, depths = self._batch(conditioning.first(tokens), labels, drawn, [rooms[i].taste for i in part])
                     for i, x0, mine, depth in zip(part, clean, labels, depths, strict=True):
-                        if depth < pressed[i]:
+                        if not draw or depth < pressed[i]:
                             proposals[i], pressed[i] = self.net.codec.proposals(x0, mine, rooms[i]), depth
                 pending = [i for i in pending if pressed[i] > PRESSED]
         return proposals
 
     def _batches(
-        self, chosen: Sequence[int], floors: Sequence[Floor], inventories: Sequence[NDArray[np.int64]]
+        self, chosen: Sequence[int], floors: Sequence[Floor], inventories: Sequence[Ints], shapes: tuple[Sequence[int], Sequence[int]]
     ) -> Iterator[tuple[int, int, list[int]]]:
         """Cut the `chosen` rooms into batches of one shape: yields slots, floor tokens, and the indices of the rooms. A room's shape is its own."""
-        slots = np.array(SLOTS)[np.searchsorted(SLOTS, [len(h) for h in inventories])]
-        tokens = np.array(TOKENS)[np.searchsorted(TOKENS, [int(f.mask.sum()) for f in floors])]
-        for shape in sorted({(int(slots[i]), int(tokens[i])) for i in chosen}):
+        slots = {i: shapes[0][bisect_left(shapes[0], len(inventories[i]))] for i in chosen}
+        tokens = {i: shapes[1][bisect_left(shapes[1], int(floors[i].mask.sum()))] for i in chosen}
+        for shape in sorted({(slots[i], tokens[i]) for i in chosen}):
             alike = [i for i in chosen if (slots[i], tokens[i]) == shape]
             for start in range(0, len(alike), self.settings.batch):
                 yield *shape, alike[start : start + self.settings.batch]
