@@ -16,6 +16,7 @@ from pipeline.errors import ContentError
 from pipeline.geometry.kinematics import beyond_body
 
 Row = Mapping[str, Any]
+KITCHEN = "kitchen"  # finish of the units of a kitchen
 UNKNOWN = (np.nan,) * 3  # finish
 TIE = 1e-12  # m3: costs of merging boxes that are nearer than that are alike
 SAT_AT = ("desk", "dressing_table", "dining_table")  # categories at which people sit
@@ -66,7 +67,7 @@ class AssetIndex:
     """All assets of the library, ordered by asset_id.
 
     `sizes` (A, 3) [m]; `latents` (A, 32), standardised by `mean` and `spread`; `sweeps` (A, K, 2, 3) [m] object frame,
-    NaN where an asset has fewer than K boxes; `shelves` lists the rows of each category that can be used; `styles` (A,) are "" where there is none, `finishes` (A, 3) CIELAB, NaN likewise.
+    NaN where an asset has fewer than K boxes; `stretch` (A, 3) is the largest change of size per axis; `shelves` lists the rows of each category that can be used; `styles` (A,) are "" where there is none, `finishes` (A, 3) CIELAB, NaN likewise.
     """
 
     asset_ids: tuple[str, ...]
@@ -78,6 +79,7 @@ class AssetIndex:
     articulated: NDArray[np.bool_]
     openable: NDArray[np.bool_]
     sweep_boxes: NDArray[np.float32]
+    stretch: NDArray[np.float64]
     shelves: Mapping[str, NDArray[np.int64]]
     settings: RetrievalSettings
     styles: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, "<U1"))
@@ -138,6 +140,7 @@ class AssetIndex:
             np.array([r["articulated"] for r in rows], bool),
             np.array([r["openable"] for r in rows], bool),
             boxes,
+            stretch_limits(names, [bool(r["articulated"]) for r in rows], settings.stretch),
             shelves,
             settings,
             np.array([str(r.get("style", "")) for r in rows], np.str_),
@@ -248,15 +251,20 @@ class AssetIndex:
         return at
 
     def scales(self, rows: NDArray[np.int64], asked: Floats) -> Floats:
-        """Return by what the assets of rows (P,) are stretched towards the `asked` sizes (P, 3) [m]: static ones a little, a run's units never in height."""
-        limits = np.where(self.articulated[rows], 0.0, self.settings.stretch)[:, None] * np.ones(3)
-        limits[[self.categories[row] in cards() and cards()[self.categories[row]].finish == "kitchen" for row in rows], 2] = 0.0
-        return np.clip(asked / self.sizes[rows], 1 - limits, 1 + limits)
+        """Return by what the assets of rows (P,) are stretched towards the `asked` sizes (P, 3) [m]."""
+        return np.clip(asked / self.sizes[rows], 1 - self.stretch[rows], 1 + self.stretch[rows])
 
     def fit(self, row: int, distance: float, asked: Floats) -> Match:
         """Return the asset of a row as what was `asked` for (3,) [m] gets it."""
         scale = self.scales(np.array([row]), np.asarray(asked, float)[None])[0]
         return Match(self.asset_ids[row], distance, scale, self.sizes[row] * scale, bool(self.openable[row]))
+
+
+def stretch_limits(categories: Sequence[str], articulated: Sequence[bool], most: float) -> Floats:
+    """Return the largest change of size per axis (A, 3): static assets are stretched a little, kitchen units in width and depth alone: one works at one height."""
+    limits = np.where(np.array(articulated), 0.0, most)[:, None] * np.ones(3)
+    limits[[name in cards() and cards()[name].finish == KITCHEN for name in categories], 2] = 0.0
+    return limits
 
 
 def sets(categories: Sequence[str | None], positions: Floats) -> list[list[int]]:

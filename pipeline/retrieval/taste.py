@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.arrays import Floats
-from pipeline.retrieval.index import AssetIndex, Match, Taste, alike_in_sets
+from pipeline.retrieval.index import KITCHEN, AssetIndex, Match, Taste, alike_in_sets
 
 # Groups of categories whose finishes go together in a room (`finish` of their cards), and those from which the room's is drawn, the first that the library has.
-TIMBER, KITCHEN, SOFT = "timber", "kitchen", "soft"
+TIMBER, SOFT = "timber", "soft"
 SOURCES: Mapping[str, tuple[str, ...]] = {
     TIMBER: ("sideboard", "cabinet", "tv_stand", "wardrobe", "desk", "dining_table"),
     KITCHEN: ("kitchen_cabinet", "sink_cabinet"),
@@ -28,9 +28,10 @@ def draw_finishes(rng: np.random.Generator, index: AssetIndex, style: str) -> di
     finishes: dict[str, Floats] = {}
     for group, categories in SOURCES.items():
         mark = rng.random()
-        rows = [int(k) for name in categories for k in index.shelves.get(name, ())]
-        rows = [k for k in rows if style and index.styles[k] == style] or rows
-        if rows:
+        rows = np.concatenate([index.shelves.get(name, np.zeros(0, np.int64)) for name in categories])
+        if style and (of_style := index.styles[rows] == style).any():
+            rows = rows[of_style]
+        if len(rows):
             finishes[group] = index.finishes[rows[int(mark * len(rows))]]
     return finishes
 
