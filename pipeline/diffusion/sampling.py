@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -12,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor
 
 from pipeline import seeds, taxonomy
@@ -28,10 +26,9 @@ from pipeline.diffusion.set_transformer import FEW, SetTransformer
 from pipeline.diffusion.settings import MOST_SLOTS, SampleSettings
 from pipeline.errors import ContentError
 
-Key = tuple[int, int, int]  # home index, room number, attempt
+Key = tuple[int, ...]  # home index, room number, attempt; behind them which draw it is, from the second on
 # Slots and floor tokens that the rooms of a batch are padded to: few shapes, for an evaluation costs more by its operations than by its rooms.
 SLOTS, TOKENS = (6, 12, 24, MOST_SLOTS), (16, 32)
-FEW_SHAPES = (12, 24, MOST_SLOTS), (32,)  # of rooms that are drawn again, which are few
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +62,24 @@ class Sampler:
         return replace(self, settings=replace(self.settings, quantity=False, articulation="none", snap_below=0))
 
     def sample_rooms(self, rooms: Sequence[RoomContext], keys: Sequence[Key]) -> list[list[Proposal]]:
-        """Furnish rooms; `keys` gives (home index, room number, attempt) for each."""
-        floors = [floor_tokens(r) for r in rooms]
-        return self.arrange(rooms, keys, self.inventories(rooms, keys, floors), floors)
+        """Furnish rooms; `keys` gives (home index, room number, attempt) for each.
 
-    def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], floors: Sequence[Floor]) -> list[NDArray[np.int64]]:
+        A room in which something stays pressed is drawn again, `redraws` times at most: first with the same things, then with others. Its least
+        pressed draw is kept.
+        """
+        floors = [floor_tokens(r) for r in rooms]
+        kept: list[tuple[float, list[Proposal]]] = [(np.inf, [])] * len(rooms)
+        pending, held = list(range(len(rooms))), self.inventories(rooms, keys, floors)
+        for draw in range(1 + self.settings.redraws):
+            own, tokens = [rooms[i] for i in pending], [floors[i] for i in pending]
+            drawn = [(*keys[i], draw) if draw else keys[i] for i in pending]
+            things = self.inventories(own, drawn, tokens) if draw > 1 else [held[i] for i in pending]
+            for i, furnished in zip(pending, self.arrange(own, drawn, things, tokens), strict=True):
+                kept[i] = min(kept[i], furnished, key=lambda room: room[0])
+            pending = [i for i in pending if kept[i][0] > PRESSED]
+        return [proposals for _, proposals in kept]
+
+    def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], floors: Sequence[Floor]) -> list[Ints]:
         """Draw what each room holds: class indices (n,), rising. Told numbers and category_bounds are met, at most `slots` objects."""
         layouts = self._layouts(rooms)
         for count in (r.n_target for r in rooms if r.n_target is not None):
@@ -93,41 +103,33 @@ class Sampler:
         return [np.repeat(np.arange(len(classes)), counts) for counts in room_counts]
 
     def arrange(
-        self, rooms: Sequence[RoomContext], keys: Sequence[Key], inventories: Sequence[NDArray[np.int64]], floors: Sequence[Floor]
-    ) -> list[list[Proposal]]:
-        """Arrange what rooms hold: `inventories` are class indices (n,) per room. Proposals come in that order."""
-        proposals: list[list[Proposal]] = [[] for _ in rooms]
-        pressed = np.full(len(rooms), np.inf)
+        self, rooms: Sequence[RoomContext], keys: Sequence[Key], inventories: Sequence[Ints], floors: Sequence[Floor]
+    ) -> list[tuple[float, list[Proposal]]]:
+        """Arrange what rooms hold: `inventories` are class indices (n,) per room. Returns how deep the worst overlap of each is [m], and proposals in that order."""
+        arranged: list[tuple[float, list[Proposal]]] = [(0.0, []) for _ in rooms]
         layouts = self._layouts(rooms)
-        pending = [i for i, held in enumerate(inventories) if len(held)]
         with one_thread(), torch.no_grad():
-            for draw in range(1 + self.settings.redraws):
-                for slots, tokens, part in self._batches(pending, floors, inventories, FEW_SHAPES if draw else (SLOTS, TOKENS)):
-                    conditioning = room_batch([floors[i] for i in part], [layouts[i] for i in part], [rooms[i].height for i in part])
-                    classes = np.full((len(part), slots), len(self.header.norm.classes))
-                    for row, i in enumerate(part):
-                        classes[row, : len(inventories[i])] = inventories[i]
-                    labels = torch.from_numpy(classes).to(self.net.codec.mean.device)
-                    drawn = [(*keys[i], draw) if draw else keys[i] for i in part]
-                    clean, depths = self._batch(conditioning.first(tokens), labels, drawn, [rooms[i].taste for i in part])
-                    for i, x0, mine, depth in zip(part, clean, labels, depths, strict=True):
-                        if not draw or depth < pressed[i]:
-                            proposals[i], pressed[i] = self.net.codec.proposals(x0, mine, rooms[i]), depth
-                pending = [i for i in pending if pressed[i] > PRESSED]
-        return proposals
+            for slots, tokens, part in self._batches(floors, inventories):
+                conditioning = room_batch([floors[i] for i in part], [layouts[i] for i in part], [rooms[i].height for i in part])
+                classes = np.full((len(part), slots), len(self.header.norm.classes))
+                for row, i in enumerate(part):
+                    classes[row, : len(inventories[i])] = inventories[i]
+                labels = torch.from_numpy(classes).to(self.net.codec.mean.device)
+                clean, depths = self._batch(conditioning.first(tokens), labels, [keys[i] for i in part], [rooms[i].taste for i in part])
+                for i, x0, mine, depth in zip(part, clean, labels, depths.tolist(), strict=True):
+                    arranged[i] = depth, self.net.codec.proposals(x0, mine, rooms[i])
+        return arranged
 
-    def _batches(
-        self, chosen: Sequence[int], floors: Sequence[Floor], inventories: Sequence[Ints], shapes: tuple[Sequence[int], Sequence[int]]
-    ) -> Iterator[tuple[int, int, list[int]]]:
-        """Cut the `chosen` rooms into batches of one shape: yields slots, floor tokens, and the indices of the rooms. A room's shape is its own."""
-        slots = {i: shapes[0][bisect_left(shapes[0], len(inventories[i]))] for i in chosen}
-        tokens = {i: shapes[1][bisect_left(shapes[1], int(floors[i].mask.sum()))] for i in chosen}
-        for shape in sorted({(slots[i], tokens[i]) for i in chosen}):
-            alike = [i for i in chosen if (slots[i], tokens[i]) == shape]
+    def _batches(self, floors: Sequence[Floor], inventories: Sequence[Ints]) -> Iterator[tuple[int, int, list[int]]]:
+        """Cut rooms into batches of one shape: yields slots, floor tokens, and the indices of the rooms. A room's shape is its own."""
+        slots = np.array(SLOTS)[np.searchsorted(SLOTS, [len(h) for h in inventories])]
+        tokens = np.array(TOKENS)[np.searchsorted(TOKENS, [int(f.mask.sum()) for f in floors])]
+        for shape in sorted({(int(s), int(t)) for s, t, h in zip(slots, tokens, inventories, strict=True) if len(h)}):
+            alike = [i for i, h in enumerate(inventories) if len(h) and (slots[i], tokens[i]) == shape]
             for start in range(0, len(alike), self.settings.batch):
                 yield *shape, alike[start : start + self.settings.batch]
 
-    def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[tuple[int, ...]], tastes: Sequence[Any]) -> tuple[Tensor, Floats]:
+    def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[Key], tastes: Sequence[Any]) -> tuple[Tensor, Floats]:
         """Sample one padded batch of objects of `classes` (batch, slots): x0 (batch, slots, 40) on their device, and how deep the worst overlap of each room is [m]."""
         device = classes.device
         rooms = rooms.to(device)
