@@ -204,8 +204,7 @@ class Clause:
     def after(self, k: int, cue: str, left: Group) -> tuple[Group, int]:
         """Return the rooms named after a relation, and where reading goes on."""
         group: list[str] = []
-        end, joined = k, ""
-        first = None
+        end, joined, first = k, "", None
         while (e := self.near(k)) is not None:
             if e.kind == "np":
                 if e.banned or (group and not joined) or (first is not None and not self._continues(k, cue, joined, first, len(group))):
@@ -219,7 +218,7 @@ class Clause:
                 return anaphor
             elif e.kind == "cue" and e.value in {"in", "leads"} and joined and cue in WIDE and not (joined == "comma" and self.relative):
                 joined = "and"  # "leads to the bath and into the kitchen"
-            elif e.kind in LISTING:
+            elif e.kind in LISTING and (group or e.kind != "comma"):
                 joined = "comma" if e.kind == "comma" and joined != "and" else "and"
             elif not self._passed(e, bool(group), joined, cue):
                 break
@@ -258,15 +257,14 @@ class Clause:
         gives = ahead is not None and ahead.kind == "cue" and (ahead.value not in {"except", "has"} or self.says(ahead, "having"))
         if gives or (ahead is not None and ahead.kind in {"verb", "cmp", "neg", "factor"}):
             return False  # the phrase is the subject of a statement of its own
-        halls = bool(self.types(self.latest or self.subject) & HALLS)
+        closed = count == len(first.ids) and [x.kind for x in self.sentence[k - 2 : k]] == ["comma", "and"]
+        halls = not closed and bool(self.types(self.latest or self.subject) & HALLS)
         if cue in {"leads", "door"} and self.relative and e.introduces and not first.introduces and not halls:
-            return False  # "a living room that opens to the kitchen, one bedroom and one bath"
+            return False  # "a living room that opens to the kitchen, one bedroom and one bath"; "a hall that ..., and a kitchen"
         if cue == "leads" and joined == "comma" and e.number and not first.number and not any(x.kind == "and" for x in self.sentence[k:]):
             return False
-        if cue in WIDE:
-            return cue != "between"
-        if joined == "comma":
-            return False
+        if cue in WIDE or joined == "comma":
+            return cue in WIDE - {"between"}
         if cue in FRONT and e.introduces:
             return "indefinite" in first.det and cue == "near"
         return e.definite or not first.definite or cue == "open"
@@ -377,7 +375,9 @@ def attach(c: Clause, k: int, token: Token, *, home: bool = False) -> None:
     """Attach an amount that stands by itself, or behind the word for the home."""
     state = c.state
     before, ahead = c.near(k - 1), c.near(k + 1)
-    rooms = () if home else named_rooms(c.latest)
+    alone = len(state.topic) == 1 and state.past[-1:] == [state.topic] and any(x.kind in {"cue", "verb"} for x in c.sentence[:k])
+    alone = alone and token.number < LARGE * DEFAULTS[c.stock.get(state.topic[0]).type].area  # "Una cocina. Que tenga 18 m2."
+    rooms = () if home else named_rooms(c.latest) or (state.topic if alone else ())
     if token.value == "storeys":
         state.storeys = state.storeys or ((int(token.number), token) if token.number >= 1 else None)
     elif token.value == "rooms":  # of one and a half, the half is to sleep in

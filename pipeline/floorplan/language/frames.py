@@ -28,7 +28,7 @@ CLOSERS = ENDS | {"comma", "close", "but", "open", "colon", "bullet", "dash"}
 SEPARATORS = {"comma", "join", "slash"}
 TOWARDS = {"into", "single", "det/indefinite", "det/another"}  # in front of each room of a list: "one to the hall, one to the kitchen"
 TRAILING = {("num", "figure"), ("amount", "area"), ("det", "own")}  # behind a head
-BARE = SKIPPED | {"comma", "verb", "bound"}  # between "actually" and the count that it takes back
+BARE = SKIPPED | {"comma", "verb", "bound", "cue", "fix", "join"}  # between "actually" and the count that it takes back
 MOST_SKIPPED = 3
 HOMES = {"large": 35.0, "vast": 60.0}  # [m2] from here on an area is no bedroom's, and no living room's
 ROOMY = 8.0  # [m2] a figure behind a room that is an area, and no count or name
@@ -97,23 +97,33 @@ def apply_frames(tokens: Sequence[Token], words: Words) -> list[Token]:
 
 
 def correct(tokens: Sequence[Token], rethought: Collection[str]) -> list[Token]:
-    """Put a count that takes back one of the same rooms in its place: "three bedrooms and two baths. No, wait, four bedrooms"."""
+    """Put a count that takes back one of the same rooms in its place: "three bedrooms and two baths. No, wait, four bedrooms"; "One bath won't do, make that two"."""
     said = list(tokens)
     for k, fix in enumerate(said):
         found = fix.kind == "fix" or (fix.text in rethought and not (k and said[k - 1].kind == "join"))
         end = next((j for j in range(k + 1, len(said)) if said[j].kind in ENDS), len(said)) if found else 0
+        begin = next((i + 1 for i in range(k - 1, -1, -1) if said[i].kind in ENDS), 0)
         for j in (j for j in range(k + 1, end) if said[j].kind == "num" and (said[j - 1].kind, said[j - 1].value) != ("join", "and")):
+            at_once = all(m.kind in BARE for m in said[k + 1 : j])
             room = _counted(said, j)
-            old = next((i for i in range(k - 1, -1, -1) if room and said[i].kind == "num" and _counted(said, i) == room), None)
-            if old is not None and (fix.kind == "fix" or all(m.kind in BARE for m in said[k + 1 : j])):
-                said[old] = replace(said[old], number=said[j].number)
+            named = next((i for i in range(k - 1, begin - 1, -1) if _counted(said, i)), None) if at_once and not room else None
+            room = room or (_counted(said, named) if named is not None else "")
+            before = range((k if named is None else begin) - 1, -1, -1) if room else ()
+            old = next((i for i in before if _counted(said, i) == room and (i < begin or said[i].kind == "num")), None)
+            if old is not None and (fix.kind == "fix" or at_once):
+                said[old] = replace(said[old], kind="num", value="", number=said[j].number)
                 said[j] = replace(said[j], kind="det", value="all", number=0.0)
+                if named is not None:
+                    said[named] = replace(said[named], kind="det", value="all", number=0.0)
+                    said[k : j + 1] = [replace(m, kind="fill", value="", number=0.0) for m in said[k : j + 1]]
     return said
 
 
 def _counted(tokens: Sequence[Token], k: int) -> str:
-    """Return which rooms the number at k counts."""
-    return next((m.value for m in tokens[k : phrase(tokens, k)] if m.kind in HEADS), "")
+    """Return which rooms the number or the article at k counts, "" for other tokens."""
+    one = (tokens[k].kind, tokens[k].value) == ("pron", "one")
+    counts = one or tokens[k].kind == "num" or (tokens[k].kind, tokens[k].value) == ("det", "indefinite")
+    return next((m.value for m in tokens[k : phrase(tokens, k + one)] if m.kind in HEADS), "") if counts else ""
 
 
 def _names(token: Token, signs: Mapping[str, frozenset[str]]) -> frozenset[str]:
@@ -265,12 +275,8 @@ def _change_token(token: Token, change: str) -> Token:
         return replace(token, kind="room", value=f"bedroom/{token.value}", number=0.0, text=f"bedroom_{token.text}")
     kind, _, value = change.partition("/")
     number = float(int(max(token.number, 1.0))) if kind == "num" else token.number
-    said: dict[str, Any] = {
-        "flip": {"bound": "most" if token.bound == "least" else "least"},
-        "less": {"number": token.number - 1},
-        "total": {"total": True},
-        "room": {"kind": "room"},
-    }
+    said: dict[str, Any] = {"less": {"number": token.number - 1}, "total": {"total": True}, "room": {"kind": "room"}}
+    said["flip"] = {"bound": "most" if token.bound == "least" else "least"}
     return replace(token, **said.get(change, {"kind": kind, "value": value, "number": number})) if change else token
 
 

@@ -281,7 +281,13 @@ class Scan:
         start, at = k, k + self.length(k, "least", "exactly", "over")
         at += self.length(at, "article", "with") if at > k else 0
         step, value = self._fraction(at)
-        last = next((j for j in self._part(at + step, WIDE) if self.length(j, "free")), 0) if step else 0
+        ahead = range(at + step, min(at + step + 2 * WIDE, len(self.words)) if step else 0)
+        part = list(itertools.takewhile(lambda j: self.text(j) not in STOPS, ahead))
+        last = next((j for j in part if self.length(j, "free")), 0)
+        joins = (j for j in part if j < last and self.length(j, "and"))
+        if other := next((j for j in joins if any(self._fraction(i)[0] for i in range(j + 1, last))), 0):
+            return self._put("walkable", k, other, value=value)  # "70 % of the bath's floor and half of the hall's must be free"
+        last = last if last in self._part(at + step, WIDE) else 0
         if not last or (last > at + step + NEAR and not any(self.length(j, "floor") for j in range(at + step, last))):
             return 0
         while step := self.length(last, "free", "floor"):

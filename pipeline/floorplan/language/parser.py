@@ -30,6 +30,7 @@ MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion t
 LONGEST_LIST = 400  # characters of a list of wishes
 FARTHEST = 24  # characters between a wish and the room that follows it
 LARGE = 8  # a number from here on is a size or a count, and missed where nothing took it
+HOME = 20.0  # [m2] an area that is a home's even where nothing names one
 CLOSE = 4  # the same where nothing but a particle stands between
 EMPTY = kinds("empty")
 NOT_BUILT = {"unbuilt", "car"}  # a garage is one for one car
@@ -68,7 +69,8 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
     tokens = join_brackets([m for m in said if m.kind != "people"], words)
     parsed = sentences(tokens, words)
     everything = [e for s in parsed for e in s]
-    if not any(e.kind in {"np", "home"} or (e.kind, e.value) == ("amount", "rooms") for e in everything):
+    named = any(e.kind in {"np", "home"} or (e.kind == "amount" and (e.value == "rooms" or e.number >= HOME)) for e in everything)
+    if not named and not people:
         shown = re.sub(r"\s+", " ", prompt.strip())[:60]
         advice = "name rooms, e.g. living room, two bedrooms, bathroom"
         raise RefusedError(f"nothing in the prompt names a room or a home: {shown!r}", advice)
@@ -98,9 +100,7 @@ def check_length(prompt: str) -> None:
         raise UsageError(f"the prompt has {count} words and tokens", f"keep it under {MOST_WORDS}")
 
 
-def _left_out(
-    state: Reading, parsed: list[list[Token]], evidence: Sequence[Evidence], tokens: Sequence[Token]
-) -> dict[str, tuple[Span, ...]]:
+def _left_out(state: Reading, parsed: list[list[Token]], evidence: Sequence[Evidence], tokens: Sequence[Token]) -> dict[str, Any]:
     """Return what nothing was made of: `unbuilt`, names of what nobody builds; `unparsed`, words that are in no vocabulary, and words that say something and stand in no evidence."""
     written = state.words.written
     places = [{k for k, t in enumerate(written) if e.start <= t.start and t.end <= e.end} for e in evidence]

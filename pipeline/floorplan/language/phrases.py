@@ -184,6 +184,7 @@ def _phrase(token: Token, pre: Sequence[Token], compound: bool, lex: Lexicon) ->
         elif part.kind == "amount":
             phrase.amounts.append(part)
     phrase.role = "" if phrase.role == "shared" and kind != "bathroom" else phrase.role
+    phrase.det -= {"other"} if "another" in phrase.det else set()  # "另外再来一间客房"
     return phrase
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 from pipeline.floorplan.language.clause import LIGHT, LIKE, LISTING, PLACES_AND_SIZES, Clause, attach, ids_of, measures_home, named_rooms
 from pipeline.floorplan.language.lexicon import kinds
-from pipeline.floorplan.language.rooms import HALLS, PERSONAL, SOCIAL, Group, Named, Reading
+from pipeline.floorplan.language.rooms import HALLS, PERSONAL, PRIVATE, SOCIAL, Group, Named, Reading
 from pipeline.floorplan.language.tokens import Token
 
 DENIED = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}  # what "not" makes of a relation
@@ -75,12 +75,9 @@ def _describe_rooms(c: Clause, k: int, e: Token, ids: tuple[str, ...]) -> None:
         c.state.say("merge", (*ids, *c.rooms_at(k + 2)), (), e)
     elif e.adjectives & {"open", "combined"} and e.type == "kitchen":
         c.state.say("open_kitchen", ids, (), e)
-    if "closed" in e.adjectives and e.type == "kitchen":
-        c.state.say("closed", ids, (), e)
-    if e.suite:
-        c.state.say("suite", ids, (), e)
-    if "largest" in e.adjectives and not c.factor:
-        c.state.say("largest", ids, (), e)
+    closed, largest = "closed" in e.adjectives and e.type == "kitchen", "largest" in e.adjectives and not c.factor
+    for what in (n for n, said in {"closed": closed, "suite": e.suite, "largest": largest}.items() if said):
+        c.state.say(what, ids, (), e)
     if "equal" in e.adjectives and len(ids) > 1:
         c.state.say("area_equal", ids, (), e, LIKE)
 
@@ -107,7 +104,7 @@ def _note(c: Clause, k: int, e: Token) -> None:
         c.run = [] if goes_on else c.run  # "the bedroom has a bath and is ...": the bedroom is
         c.verb, c.single = True, c.says(e, "singular")
     elif e.kind == "relative":
-        c.relative = not c.says(e, "where")
+        c.relative = bool(k) and not c.says(e, "where")
     elif e.kind in {"neg", "but"}:  # "not open, but next to the dining room"
         c.negative = e if e.kind == "neg" else None
     elif e.kind == "comma" and c.negative is not c.sentence[k - 1] and (ahead is None or ahead.kind not in {"cue", "cmp", "or", "neg"}):
@@ -179,12 +176,8 @@ def _flag(c: Clause, k: int, e: Token) -> None:
 
 def relate(c: Clause, k: int, e: Token) -> int | None:  # noqa: PLR0911 - one answer per kind of relation
     """Read one relation; return where to go on."""
-    if e.value == "has":
-        return has(c, k, e)
-    if e.value == "except":
-        return except_rooms(c, k, e)
-    if e.value.startswith("thru"):
-        return through(c, k, e)
+    if (way := {"has": has, "except": except_rooms}.get(e.value, through if e.value.startswith("thru") else None)) is not None:
+        return way(c, k, e)
     c.relative = c.relative or bool(c.state.words.lexicon.sign("relative_cue") & set(e.text.split()[:3]))  # "que da al"
     left, group, j = _sides(c, k, e)
     if not group:
@@ -223,7 +216,12 @@ def _sides(c: Clause, k: int, e: Token) -> tuple[Group, Group, int]:
     left = () if ahead is not None and ahead.value == "pair" else c.subjects(k, e)  # "dazwischen liegt das Bad"
     wide = ahead is not None and ahead.kind == "np" and (len(left) > 2 or (len(left) > 1 and ahead.definite))
     group, j = c.after(k + 1, "leads" if e.value == "door" and c.says(e, "to_many") else e.value, () if wide else left)
-    return tuple(i for i in left if i not in group), group, j
+    left = tuple(i for i in left if i not in group)
+    if (
+        e.value == "open" and c.negative is None
+    ):  # "a bedroom, a bath and a kitchen, all open to the living room": nothing stands open to these
+        left = tuple(i for i in left if i[0] == "*" or c.stock.get(i).type not in PRIVATE) or left
+    return left, group, j
 
 
 def _alone(c: Clause, k: int, e: Token) -> int | None:
@@ -277,6 +275,7 @@ def except_rooms(c: Clause, k: int, e: Token) -> int:
 def through(c: Clause, k: int, e: Token) -> int:
     """Read "you pass through the dining room to reach the kitchen", and what must not be so."""
     first, j = c.after(k + 1, "door", ())
+    j += bool(first) and c.ends(j)  # "durchs Wohnzimmer, um ins Schlafzimmer zu kommen"
     second, j = c.after(j, "leads" if e.value == "thru" else "door", first) if first else ((), k + 1)
     if not second:
         return max(j, k + 1)

@@ -162,15 +162,15 @@ def detect(prompt: str) -> Language:
     texts = [fold(t.text) for t in written if any(c.isalpha() for c in t.text)][:MOST]
     if not texts:
         raise RefusedError(f"no words in the prompt: {quoted}", f"say in {', '.join(most)} or {last} which rooms you want")
-    han = sum(is_han(t[0]) for t in texts)
+    han, in_letters = sum(is_han(t[0]) for t in texts), [n for n in LANGUAGES if "characters" not in lexicon(n).traits]
     letters = characters()["latin"] + characters()["han"]
     foreign = sum(t.text[0].isalpha() and not re.match(rf"[{letters}]", t.text) for t in written)  # in a script that is not read
     if han and han >= 0.3 * len(texts) and not foreign:
-        return next(language for language in LANGUAGES if _han(language))
-    scores = [(*_score(language, texts, repaired=False), language) for language in LANGUAGES if not _han(language)]
+        return next(language for language in LANGUAGES if language not in in_letters)
+    scores = [(*_score(language, texts, repaired=False), language) for language in in_letters]
     if max(scores, key=lambda s: s[0])[1] < SURE * len(texts):  # typing errors, or another language
         texts = texts[:REPAIRED]
-        scores = [(*_score(language, texts, repaired=True), language) for language in LANGUAGES if not _han(language)]
+        scores = [(*_score(language, texts, repaired=True), language) for language in in_letters]
     _, exact, close, best = max(scores, key=lambda s: s[0])
     others = sum(t in unread() for t in texts)
     share = (exact + REPAIR * close + min(han, 2)) / len(texts)
@@ -179,23 +179,15 @@ def detect(prompt: str) -> Language:
     return best
 
 
-def _han(language: Language) -> bool:
-    """Whether a language is written in Chinese characters."""
-    return "characters" in lexicon(language).traits
-
-
 def _score(language: Language, texts: list[str], *, repaired: bool) -> tuple[float, int, int]:
     """Return (score, known words, words that are known once repaired)."""
     lex = lexicon(language)
-    exact = close = 0
-    score = 0.0
+    exact, close, score = 0, 0, 0.0
     for text in texts:
-        parts: tuple[str, ...] = (text,)
         known = text in lex.vocabulary
-        if not known:
-            parts = resolve(text, language) if repaired else parts
-            if parts == (text,):
-                continue
+        parts = resolve(text, language) if repaired and not known else (text,)
+        if not known and parts == (text,):
+            continue
         exact, close = exact + known, close + (not known)
         node = lex.trie.get(parts[0], {})
         named = "" in node and node[""].kind in STRONG

@@ -20,7 +20,6 @@ LEADING = {"det", "num", "ord", "adj", "size", "clf", "times"}  # in front of a 
 SQUARES = {1.0: (1.0, 8.0), 0.3048: (0.092903, 49.0)}
 BOUNDS = {"least": "least", "or_more": "least", "most": "most", "or_less": "most"}
 ARROWS = {"<->", "->", "=>", "→"}
-MOST_BETWEEN = 12  # tokens between "neither" and "nor"
 
 
 @dataclass(slots=True)
@@ -218,18 +217,11 @@ def _relabel(tokens: Sequence[Token], words: Words) -> list[Token]:
             relabelled[k] = replace(token, number=next((a.number for a in kids if a.kind == "num"), 0.0))
         elif token.kind == "every" and any(m.kind == "room" and m.text.startswith(token.text.rsplit(" ", 1)[-1]) for m in tokens[:k]):
             relabelled[k] = replace(token, kind="room", value="bedroom", plural=True)  # "todas las habitaciones": so many were counted
-        elif (
-            token.text == "?"
-            and k + 1 < len(tokens)
-            and (tokens[k + 1].kind in {"neg", "needless"} or tokens[k + 1].text in lex.sign("nope"))
-        ):
+        elif token.text == "?" and any(m.kind in {"neg", "needless"} or m.text in lex.sign("nope") for m in tokens[k + 1 : k + 2]):
             relabelled[k] = replace(token, kind="colon")  # "Garage? No thanks"
-        elif (
-            token.kind == "neg"
-            and token.text in lex.sign("still")
-            and not any(m.kind == "neg" for m in tokens[max(k - MOST_BETWEEN, 0) : k])
-        ):
-            relabelled[k] = replace(token, kind="fill")  # "sonst noch"
+        elif token.kind == "neg" and token.text in lex.sign("still"):  # "weder ... noch", but "noch zwei Bäder"
+            here = itertools.takewhile(lambda m: m.kind not in ENDS, reversed(tokens[:k]))
+            relabelled[k] = token if any(m.kind == "neg" for m in here) else replace(token, kind="fill")
         elif token.kind == "home" and k and bedrooms and token.text in lex.sign("study"):
             relabelled[k] = replace(token, kind="room", value="office")
     return relabelled
