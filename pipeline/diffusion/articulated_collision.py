@@ -24,9 +24,8 @@ DEEP = 0.04  # [m] from which depth on a push grows no further: squares would sh
 RAMP = 0.05  # [m] that two things must share in height to count wholly
 LEAST = 0.02  # [m] that a side of a box has
 BODY, SWEEP = 0.5, 0.25  # weight of what lies outside the room: a side of a box has two corners or more beyond a wall
-EIGHT = np.array(
-    [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (0, 1), (-1, 0), (1, 0)], float
-)  # corners and side middles, in halves of the sides
+# Corners and side middles of a box, in halves of its sides.
+EIGHT = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (0, 1), (-1, 0), (1, 0)], float)
 SHORT = 1e-3  # length of (cos, sin) of a yaw that is not known at all
 TIE = 1e-6  # [m]
 CX, CY, HALF_W, HALF_D, COS, SIN, LOW, HIGH = range(8)  # columns of a prism: an upright rotated box

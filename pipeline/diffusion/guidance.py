@@ -18,7 +18,7 @@ import torch
 from torch import Tensor
 
 from pipeline.arrays import Bools, Floats, Ints
-from pipeline.diffusion.articulated_collision import Furniture, Obstacles, articulated_collision, descend
+from pipeline.diffusion.articulated_collision import LEAST, SHORT, Furniture, Obstacles, articulated_collision, descend
 from pipeline.diffusion.batch import RoomBatch
 from pipeline.diffusion.codec import POSITION, SHAPE, SIZE, YAW, Codec
 from pipeline.diffusion.context import Library
@@ -26,7 +26,7 @@ from pipeline.diffusion.schedule import lambda_of
 from pipeline.diffusion.settings import SampleSettings
 
 BOX = slice(0, YAW.stop)  # channels of the geometry: position, size, cos and sin of yaw
-PRESSED = 0.01  # [m] of overlap that is left where a smaller asset is asked for
+PRESSED = 0.01  # [m] of overlap from which on a smaller asset is asked for, and a room is drawn again
 LESS = 1e-4  # [m2] of floor from which on an asset is smaller
 
 
@@ -76,7 +76,7 @@ class Guidance:
         size, sweeps = self.find_assets(boxes, shapes)
         moved = resized(boxes, size) if snaps else boxes
         if guides:
-            sweeps = heuristic_sweeps(moved[..., SIZE], self.opens[self.classes]) if s.articulation == "heuristic" else sweeps
+            sweeps = self._counted(moved, sweeps)
             moved = self.push_apart(moved, sweeps)
             if snaps and s.articulation == "joints":
                 moved = self._with_smaller_assets(moved, shapes, sweeps)
@@ -89,14 +89,18 @@ class Guidance:
         if self.settings.articulation == "none" or self.library is None:
             return np.zeros(len(x0))
         expected, _ = self._metric(codec, x0)
-        return articulated_collision(
-            expected[..., BOX], self._furniture(self.find_assets(expected[..., BOX], expected[..., SHAPE])[1]), self.obstacles
-        )[2]
+        boxes = expected[..., BOX]
+        sweeps = self._counted(boxes, self.find_assets(boxes, expected[..., SHAPE])[1])
+        return articulated_collision(boxes, self._furniture(sweeps), self.obstacles)[2]
 
     def _metric(self, codec: Codec, x0: Tensor) -> tuple[Floats, Tensor]:
         """Return the channels x0 (B, N, 40) in metres, and the classes on their device."""
         classes = torch.from_numpy(self.classes).to(x0.device)
         return codec.metric(x0, classes).double().cpu().numpy(), classes
+
+    def _counted(self, boxes: Floats, sweeps: Floats | None) -> Floats | None:
+        """Return what counts as extended state of boxes (B, N, 8): what their assets' joints sweep, or the paper's heuristic."""
+        return heuristic_sweeps(boxes[..., SIZE], self.opens[self.classes]) if self.settings.articulation == "heuristic" else sweeps
 
     def _furniture(self, sweeps: Floats | None) -> Furniture:
         return Furniture.of(self.classes < len(self.names), sweeps, self.tucked)
@@ -135,7 +139,7 @@ class Guidance:
 
     def find_assets(self, boxes: Floats, shapes: Floats) -> tuple[Floats, Floats | None]:
         """Ask the library for each object's asset: its size (B, N, 3) [m] and its sweeps (B, N, K, 2, 3) [m]."""
-        size = np.maximum(boxes[..., SIZE], 0.02)
+        size = np.maximum(boxes[..., SIZE], LEAST)
         if self.library is None:
             return size, None
         names = [[self.names[c] if c < len(self.names) else None for c in row] for row in self.classes]
@@ -155,7 +159,7 @@ def heuristic_sweeps(size: Floats, opens: Bools) -> Floats:
 
 def resized(boxes: Floats, size: Floats) -> Floats:
     """Return boxes (B, N, 8) of the given sizes (B, N, 3) [m], their backs where they were."""
-    length = np.maximum(np.hypot(boxes[..., 6], boxes[..., 7]), 1e-3)
+    length = np.maximum(np.hypot(boxes[..., 6], boxes[..., 7]), SHORT)
     grown = (size[..., 1] - boxes[..., 4]) / 2 / length
     changed = boxes.copy()
     changed[..., 0] += boxes[..., 7] * grown

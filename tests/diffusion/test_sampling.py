@@ -222,3 +222,17 @@ def test_a_room_that_stays_pressed_is_drawn_again_and_its_least_pressed_draw_is_
         better = min(drawn[key], default=np.inf) < depths[key]
         assert better != all(np.array_equal(a.position, b.position) for a, b in zip(first, last, strict=True))
         assert len(first) == len(last) == rooms[key[0]].n_target
+
+
+def test_what_guides_a_room_is_what_tells_whether_it_stays_pressed(weights, norm):
+    """Shelf's drawers would meet; the paper's heuristic, of classes that do not open, knows of none."""
+    room = replace(make_context(0), polygon=np.array([[0, 0], [6.0, 0], [6.0, 6.0], [0, 6.0]]), openings=())
+    codec, classes = sampler(weights).net.codec, torch.full((1, 2), CLASSES.index("wardrobe"))
+    metric = torch.zeros(1, 2, 40)
+    metric[..., 1], metric[..., 3:6], metric[..., 6] = torch.tensor([[0.0, 0.7]]), 0.5, 1.0
+    x0 = (metric - codec.mean[classes]) / codec.scale[classes]
+    nothing = np.zeros(len(norm.classes) + 1, int)
+    rooms = room_batch([floor_tokens(room)], [0], [2.7])
+    settings = [SampleSettings(articulation=kind) for kind in ("joints", "heuristic", "none")]
+    pressed = [float(Guidance.of(codec, rooms, [None], classes, Shelf(), nothing > 0, nothing, s).pressure(codec, x0)[0]) for s in settings]
+    assert pressed == pytest.approx([0.15, 0.0, 0.0], abs=1e-4)

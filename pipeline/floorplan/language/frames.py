@@ -275,8 +275,12 @@ def _change_token(token: Token, change: str) -> Token:
         return replace(token, kind="room", value=f"bedroom/{token.value}", number=0.0, text=f"bedroom_{token.text}")
     kind, _, value = change.partition("/")
     number = float(int(max(token.number, 1.0))) if kind == "num" else token.number
-    said: dict[str, Any] = {"less": {"number": token.number - 1}, "total": {"total": True}, "room": {"kind": "room"}}
-    said["flip"] = {"bound": "most" if token.bound == "least" else "least"}
+    said: dict[str, Any] = {
+        "flip": {"bound": "most" if token.bound == "least" else "least"},
+        "less": {"number": token.number - 1},
+        "total": {"total": True},
+        "room": {"kind": "room"},
+    }
     return replace(token, **said.get(change, {"kind": kind, "value": value, "number": number})) if change else token
 
 

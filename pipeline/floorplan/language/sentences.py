@@ -217,9 +217,8 @@ def _sides(c: Clause, k: int, e: Token) -> tuple[Group, Group, int]:
     wide = ahead is not None and ahead.kind == "np" and (len(left) > 2 or (len(left) > 1 and ahead.definite))
     group, j = c.after(k + 1, "leads" if e.value == "door" and c.says(e, "to_many") else e.value, () if wide else left)
     left = tuple(i for i in left if i not in group)
-    if (
-        e.value == "open" and c.negative is None
-    ):  # "a bedroom, a bath and a kitchen, all open to the living room": nothing stands open to these
+    # "a bedroom, a bath and a kitchen, all open to the living room": nothing stands open to the first two
+    if e.value == "open" and c.negative is None:
         left = tuple(i for i in left if i[0] == "*" or c.stock.get(i).type not in PRIVATE) or left
     return left, group, j
 

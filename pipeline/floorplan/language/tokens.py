@@ -124,7 +124,8 @@ def segment(words: Words) -> list[Token]:
         token = _token(words, i)
         if token.last > i:
             i = token.last
-            tokens += [token] if token.text != "." or tokens[-1:] == [] or tokens[-1].text != "." else []  # "..." is one stop
+            if not (token.text == "." and tokens and tokens[-1].text == "."):  # "..." is one stop
+                tokens.append(token)
         else:
             i += 1
     between = ([x.kind for x in tokens[max(k - 1, 0) : k + 2 : 2]] for k in range(len(tokens)))  # "kitchen-diner" is written as one
