@@ -99,24 +99,36 @@ def apply_frames(tokens: Sequence[Token], words: Words) -> list[Token]:
 def correct(tokens: Sequence[Token], rethought: Collection[str]) -> list[Token]:
     """Put a count that takes back one of the same rooms in its place: "three bedrooms and two baths. No, wait, four bedrooms"; "One bath won't do, make that two"."""
     said = list(tokens)
-    for k, fix in enumerate(said):
-        found = fix.kind == "fix" or (fix.text in rethought and not (k and said[k - 1].kind == "join"))
-        end = next((j for j in range(k + 1, len(said)) if said[j].kind in ENDS), len(said)) if found else 0
-        begin = next((i + 1 for i in range(k - 1, -1, -1) if said[i].kind in ENDS), 0)
-        for j in (j for j in range(k + 1, end) if said[j].kind == "num" and (said[j - 1].kind, said[j - 1].value) != ("join", "and")):
-            at_once = all(m.kind in BARE for m in said[k + 1 : j])
-            room = _counted(said, j)
-            named = next((i for i in range(k - 1, begin - 1, -1) if _counted(said, i)), None) if at_once and not room else None
-            room = room or (_counted(said, named) if named is not None else "")
-            before = range((k if named is None else begin) - 1, -1, -1) if room else ()
-            old = next((i for i in before if _counted(said, i) == room and (i < begin or said[i].kind == "num")), None)
-            if old is not None and (fix.kind == "fix" or at_once):
-                said[old] = replace(said[old], kind="num", value="", number=said[j].number)
-                said[j] = replace(said[j], kind="det", value="all", number=0.0)
-                if named is not None:
-                    said[named] = replace(said[named], kind="det", value="all", number=0.0)
-                    said[k : j + 1] = [replace(m, kind="fill", value="", number=0.0) for m in said[k : j + 1]]
+    for k, token in enumerate(said):
+        joined = k and said[k - 1].kind == "join"
+        if token.kind == "fix" or (token.text in rethought and not joined):
+            _take_back(said, k)
     return said
+
+
+def _take_back(said: list[Token], k: int) -> None:
+    """Let the counts in the sentence behind the correction at k replace those of the same rooms before it."""
+    end = next((j for j in range(k + 1, len(said)) if said[j].kind in ENDS), len(said))
+    begin = next((i + 1 for i in range(k - 1, -1, -1) if said[i].kind in ENDS), 0)
+    for j in range(k + 1, end):
+        if said[j].kind != "num" or (said[j - 1].kind, said[j - 1].value) == ("join", "and"):
+            continue
+        at_once = all(m.kind in BARE for m in said[k + 1 : j])
+        room, named = _counted(said, j), None
+        if at_once and not room:  # "make that two": of what this sentence named last
+            named = next((i for i in range(k - 1, begin - 1, -1) if _counted(said, i)), None)
+            room = "" if named is None else _counted(said, named)
+        if not room or not (at_once or said[k].kind == "fix"):
+            continue
+        before = range((k if named is None else begin) - 1, -1, -1)
+        old = next((i for i in before if _counted(said, i) == room and (i < begin or said[i].kind == "num")), None)
+        if old is None:
+            continue
+        said[old] = replace(said[old], kind="num", value="", number=said[j].number)
+        said[j] = replace(said[j], kind="det", value="all", number=0.0)
+        if named is not None:
+            said[named] = replace(said[named], kind="det", value="all", number=0.0)
+            said[k : j + 1] = [replace(m, kind="fill", value="", number=0.0) for m in said[k : j + 1]]
 
 
 def _counted(tokens: Sequence[Token], k: int) -> str:

@@ -114,8 +114,8 @@ class _Entries(BaseModel):
 
 
 def split(text: str) -> Iterator[str]:
-    """Return the phrases of a comma-separated entry; "[a b][c d]" stands for ac, ad, bc and bd."""
-    for phrase in (p for p in (q.strip() for q in text.split(",")) if p):
+    """Return the phrases of an entry, parted by commas and ends of lines; "[a b][c d]" stands for ac, ad, bc and bd."""
+    for phrase in (p for p in (q.strip() for q in re.split("[,\n]", text)) if p):
         if "[" in phrase:
             parts = [m.group(1).split() if m.group(1) else [m.group(2)] for m in CHOICES.finditer(phrase)]
             yield from map("".join, itertools.product(*parts))

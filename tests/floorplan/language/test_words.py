@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from pipeline.floorplan.language import tokens
-from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon
+from pipeline.floorplan.language.lexicon import FOLDER, LANGUAGES, lexicon, split
 from pipeline.floorplan.language.parser import parse
 from pipeline.floorplan.language.spelling import distance, resolve
 from pipeline.floorplan.language.text import Verbs, clean, fold, split_words
@@ -293,3 +293,7 @@ def test_who_lives_there_has_a_bedroom_for_two_and_one_for_each_child(prompt):
     program = parse(prompt)
     assert sum(r.type == "bedroom" for r in program.rooms) == 4
     assert program.unparsed == ()
+
+
+def test_phrases_end_with_their_line():
+    assert list(split("two rooms, a bath\na hall,\n[off on] it")) == ["two rooms", "a bath", "a hall", "off it", "on it"]
