@@ -19,7 +19,7 @@ def test_misread_prompts_name_their_words_and_well_read_ones_do_not():
             program = parse(case["prompt"])
         except RefusedError:
             continue
-        if faults(case):
+        if faults(case, lambda _, program=program: program):
             misread, named = misread + 1, named + bool(program.unparsed)
         else:
             expected = {w for words in case.get("unread", ()) for w in words.lower().split()}
