@@ -14,16 +14,17 @@ from pipeline.arrays import Floats
 from pipeline.card import cards
 from pipeline.errors import ContentError
 from pipeline.geometry.kinematics import beyond_body
+from pipeline.retrieval.nearest import Asks, Library, Shelves, Tastes, Weights, nearest_assets
 
 Row = Mapping[str, Any]
 KITCHEN = "kitchen"  # finish of the units of a kitchen
+GROUPS = ("", "timber", KITCHEN, "soft")  # values of `finish` on the cards
 UNKNOWN = (np.nan,) * 3  # finish
 TIE = 1e-12  # m3: costs of merging boxes that are nearer than that are alike
 SAT_AT = ("desk", "dressing_table", "dining_table")  # categories at which people sit
 SEAT = 0.55  # width of a seat, and of who sits on it [m]
 KNEES = 0.5  # what opens above this is above the seat [m]
 CLOSE = 0.4  # a seat behind what reaches no farther before the front is still at the desk [m]
-STEP, MOST_STEPS = 30.0, 2.0  # how far off a finish has to be to count once [CIELAB]; it counts so many times at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,8 +83,8 @@ class AssetIndex:
     stretch: NDArray[np.float64]
     shelves: Mapping[str, NDArray[np.int64]]
     settings: RetrievalSettings
-    styles: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, "<U1"))
-    finishes: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))
+    styles: NDArray[np.str_]
+    finishes: NDArray[np.float64]
 
     def openers(self) -> AssetIndex:
         """Return the index of the assets that open alone."""
@@ -156,45 +157,36 @@ class AssetIndex:
         that was wished for, else by `prefer_taste`; what opens has often none. Of the `shortlist` nearest that is taken which is nearest
         with its finish counted in.
         """
-        s, asked = self.settings, np.array([c or "" for c in categories])
-        rows, distances = np.full(len(asked), -1, np.int64), np.full(len(asked), np.inf)
-        for name in sorted(set(asked.tolist()) & set(self.shelves)):
-            shelf, where = self.shelves[name], np.flatnonzero(asked == name)
-            own = [tastes[k] for k in where.tolist()]
-            far = self.distance(shelf, sizes[where], latents[where]) + self.style_costs(shelf, own)
-            best = np.argsort(far, axis=1, kind="stable")[:, : s.shortlist]
-            group = cards()[name].finish if name in cards() else ""
-            wished = np.stack([np.asarray(taste.finishes.get(group, UNKNOWN)) for taste in own])
-            off = np.linalg.norm(self.finishes[shelf[best]] - wished[:, None], axis=2)
-            nearest = np.take_along_axis(far, best, 1)
-            cost = nearest + s.prefer_finish * np.minimum(np.nan_to_num(off) / STEP, MOST_STEPS)
-            chosen = cost.argmin(1)[:, None]
-            rows[where] = shelf[np.take_along_axis(best, chosen, 1)[:, 0]]
-            distances[where] = np.take_along_axis(nearest, chosen, 1)[:, 0]
-        return rows, distances
-
-    def distance(self, shelf: NDArray[np.int64], sizes: NDArray[np.float64], latents: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the distances (P, S) between P asks and the S assets of a shelf.
-
-        Root mean square of the standardised latent difference, plus the root mean square log ratio of the sizes; where
-        the category has articulated assets, those that do not open are `prefer_openable` times as far.
-        """
+        names = sorted({name for name in categories if name is not None and name in self.shelves})
+        place: dict[str | None, int] = {name: k for k, name in enumerate(names)}
+        group = [GROUPS.index(cards()[name].finish) if name in cards() else 0 for name in names]
+        distinct = {id(taste): taste for taste in tastes}
+        which = {key: t for t, key in enumerate(distinct)}
+        asks = Asks(
+            np.array([place.get(name, -1) for name in categories], np.int64),
+            np.array([which[id(taste)] for taste in tastes], np.int64),
+            np.asarray(sizes, np.float64),
+            (np.asarray(latents, np.float64) - self.mean) / self.spread,
+        )
+        shelves, own = Shelves.of([self.shelves[name] for name in names], group), self._tastes(list(distinct.values()))
         s = self.settings
-        asked = (latents - self.mean) / self.spread
-        shape = np.sqrt(((asked[:, None] - self.latents[shelf][None]) ** 2).mean(-1))
-        ratio = np.log(np.maximum(sizes[:, None], 0.02) / np.maximum(self.sizes[shelf][None], 0.02))
-        size = np.sqrt((ratio**2).mean(-1))
-        total: NDArray[np.float64] = s.latent_weight * shape + s.size_weight * size
-        openable = self.openable[shelf]
-        if openable.any():
-            total = np.where(openable[None], total, (total + s.prefer_offset) * s.prefer_openable)
-        return total
+        return nearest_assets(self._library(), shelves, own, asks, self._weights(s.prefer_finish), s.shortlist)
 
-    def style_costs(self, shelf: NDArray[np.int64], tastes: Sequence[Taste]) -> Floats:
-        """Return how much farther (P, S) the assets of a shelf are for being of another style than each taste's."""
-        own, wanted = self.styles[shelf][None], np.array([taste.style for taste in tastes])[:, None]
-        costs = np.array([self.settings.prefer_style if taste.wished else self.settings.prefer_taste for taste in tastes])
-        return np.asarray(costs[:, None] * ((own != "") & (wanted != "") & (own != wanted)))
+    def _library(self) -> Library:
+        return Library(self.sizes, self.latents, self.openable, self.finishes)
+
+    def _tastes(self, tastes: Sequence[Taste]) -> Tastes:
+        styled = self.styles != ""
+        other = [styled & (self.styles != taste.style) if taste.style else np.zeros(len(styled), bool) for taste in tastes]
+        costs = [self.settings.prefer_style if taste.wished else self.settings.prefer_taste for taste in tastes]
+        finishes = [[taste.finishes.get(group, UNKNOWN) for group in GROUPS] for taste in tastes]
+        return Tastes(
+            np.array(other).reshape(len(tastes), -1), np.array(costs, float), np.array(finishes, float).reshape(-1, len(GROUPS), 3)
+        )
+
+    def _weights(self, finish: float) -> Weights:
+        s = self.settings
+        return Weights(s.latent_weight, s.size_weight, s.prefer_openable, s.prefer_offset, finish)
 
     def smaller(self, taste: Taste, asset_id: str, max_area: float) -> Match | None:
         """Return the closest asset of the same category whose footprint w * d is below `max_area` [m2] (algorithm 2).
@@ -210,11 +202,10 @@ class AssetIndex:
         fits = alike if len(alike) else fits
         if not len(fits):
             return None
-        raw = self.latents[row] * self.spread + self.mean
-        table = (self.distance(fits, self.sizes[row][None], raw[None]) + self.style_costs(fits, [taste]))[0]
-        best = int(table.argmin())
-        closest = int(fits[best])
-        return self.fit(closest, float(table[best]), self.sizes[closest])
+        one = np.zeros(1, np.int64)
+        asks = Asks(one, one, self.sizes[row][None], self.latents[row][None])
+        (closest,), (far,) = nearest_assets(self._library(), Shelves.of([fits], [0]), self._tastes([taste]), asks, self._weights(0.0), 1)
+        return self.fit(int(closest), float(far), self.sizes[closest])
 
     def lookup(
         self,
