@@ -81,7 +81,7 @@ def _ring(sketch: Sketch, room: SketchRoom) -> Floats:
     ring, name = room.ring, room.room_id
     if len(ring) > 1 and np.linalg.norm(ring[0] - ring[-1]) < SAME:
         ring = ring[:-1]
-        sketch.repair("closed", name, "the last corner repeats the first and is dropped")
+        sketch.repair("closing_corner", name, "the last corner repeats the first and is dropped")
     apart = np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) >= SAME
     if not apart.all() and len(ring) > 1:
         sketch.repair("duplicate", name, f"{int((~apart).sum())} corners repeat the one before and are dropped")

@@ -93,7 +93,7 @@ def test_the_schema_is_exported_and_describes_refusals_too():
 
 
 REPAIRED = {
-    "closed": polygon(0, [*box(0, 0, 5, 4), [0, 0]]),
+    "closing_corner": polygon(0, [*box(0, 0, 5, 4), [0, 0]]),
     "duplicate": polygon(0, [[0, 0], [0, 0], [5, 0], [5, 4], [5, 4.0001], [0, 4]]),
     "collinear": polygon(0, [[0, 0], [2, 0], [5, 0], [5, 4], [0, 4]]),
     "clockwise": polygon(0, box(0, 0, 5, 4)[::-1]),
