@@ -1,6 +1,6 @@
 """Fewer convex pieces by what a hand feels: neighbours become one piece while its surface stays close to theirs.
 
-The measure is the way from the common hull's surface to the pieces as they were first, so that errors do not add up. A cup
+The measure is the way from the common hull's surface to the pieces as they were first, so that errors do not add up. A bowl
 keeps its hollow, with fewer staves; bevels, beads and shallow frames go; a block that is closed all round becomes one piece.
 """
 
