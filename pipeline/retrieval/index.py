@@ -14,11 +14,10 @@ from pipeline.arrays import Floats
 from pipeline.card import cards
 from pipeline.errors import ContentError
 from pipeline.geometry.kinematics import beyond_body
-from pipeline.retrieval.nearest import Asks, Library, Shelves, Tastes, Weights, nearest_assets
+from pipeline.retrieval.nearest import Asks, AssetArrays, DistanceWeights, Shelves, Tastes, nearest_assets
 
 Row = Mapping[str, Any]
 KITCHEN = "kitchen"  # finish of the units of a kitchen
-GROUPS = ("", "timber", KITCHEN, "soft")  # values of `finish` on the cards
 UNKNOWN = (np.nan,) * 3  # finish
 TIE = 1e-12  # m3: costs of merging boxes that are nearer than that are alike
 SAT_AT = ("desk", "dressing_table", "dining_table")  # categories at which people sit
@@ -159,7 +158,7 @@ class AssetIndex:
         """
         names = sorted({name for name in categories if name is not None and name in self.shelves})
         place: dict[str | None, int] = {name: k for k, name in enumerate(names)}
-        group = [GROUPS.index(cards()[name].finish) if name in cards() else 0 for name in names]
+        groups = [cards()[name].finish if name in cards() else "" for name in names]
         distinct = {id(taste): taste for taste in tastes}
         which = {key: t for t, key in enumerate(distinct)}
         asks = Asks(
@@ -168,25 +167,26 @@ class AssetIndex:
             np.asarray(sizes, np.float64),
             (np.asarray(latents, np.float64) - self.mean) / self.spread,
         )
-        shelves, own = Shelves.of([self.shelves[name] for name in names], group), self._tastes(list(distinct.values()))
-        s = self.settings
-        return nearest_assets(self._library(), shelves, own, asks, self._weights(s.prefer_finish), s.shortlist)
+        columns = sorted(set(groups))
+        shelves = Shelves.of([self.shelves[name] for name in names], [columns.index(group) for group in groups])
+        own, s = self._tastes(list(distinct.values()), columns), self.settings
+        return nearest_assets(self._arrays(), shelves, own, asks, self._weights(s.prefer_finish), s.shortlist)
 
-    def _library(self) -> Library:
-        return Library(self.sizes, self.latents, self.openable, self.finishes)
+    def _arrays(self) -> AssetArrays:
+        return AssetArrays(self.sizes, self.latents, self.openable, self.finishes)
 
-    def _tastes(self, tastes: Sequence[Taste]) -> Tastes:
+    def _tastes(self, tastes: Sequence[Taste], groups: Sequence[str]) -> Tastes:
         styled = self.styles != ""
         other = [styled & (self.styles != taste.style) if taste.style else np.zeros(len(styled), bool) for taste in tastes]
         costs = [self.settings.prefer_style if taste.wished else self.settings.prefer_taste for taste in tastes]
-        finishes = [[taste.finishes.get(group, UNKNOWN) for group in GROUPS] for taste in tastes]
+        finishes = [[taste.finishes.get(group, UNKNOWN) for group in groups] for taste in tastes]
         return Tastes(
-            np.array(other).reshape(len(tastes), -1), np.array(costs, float), np.array(finishes, float).reshape(-1, len(GROUPS), 3)
+            np.array(other).reshape(len(tastes), -1), np.array(costs, float), np.array(finishes, float).reshape(len(tastes), len(groups), 3)
         )
 
-    def _weights(self, finish: float) -> Weights:
+    def _weights(self, finish: float) -> DistanceWeights:
         s = self.settings
-        return Weights(s.latent_weight, s.size_weight, s.prefer_openable, s.prefer_offset, finish)
+        return DistanceWeights(s.latent_weight, s.size_weight, s.prefer_openable, s.prefer_offset, finish)
 
     def smaller(self, taste: Taste, asset_id: str, max_area: float) -> Match | None:
         """Return the closest asset of the same category whose footprint w * d is below `max_area` [m2] (algorithm 2).
@@ -204,7 +204,9 @@ class AssetIndex:
             return None
         one = np.zeros(1, np.int64)
         asks = Asks(one, one, self.sizes[row][None], self.latents[row][None])
-        (closest,), (far,) = nearest_assets(self._library(), Shelves.of([fits], [0]), self._tastes([taste]), asks, self._weights(0.0), 1)
+        (closest,), (far,) = nearest_assets(
+            self._arrays(), Shelves.of([fits], [0]), self._tastes([taste], [""]), asks, self._weights(0.0), 1
+        )
         return self.fit(int(closest), float(far), self.sizes[closest])
 
     def lookup(

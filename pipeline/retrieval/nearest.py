@@ -13,7 +13,7 @@ SMALLEST = 0.02  # of an asked or own side, where sizes are compared [m]
 STEP, MOST_STEPS = 30.0, 2.0  # how far off a finish has to be to count once [CIELAB]; it counts so many times at most
 
 
-class Library(NamedTuple):
+class AssetArrays(NamedTuple):
     """A assets: `sizes` (A, 3) [m], standardised `latents` (A, 32), `openable` (A,), `finishes` (A, 3) CIELAB, NaN where unknown."""
 
     sizes: Floats
@@ -53,7 +53,7 @@ class Asks(NamedTuple):
     latents: Floats
 
 
-class Weights(NamedTuple):
+class DistanceWeights(NamedTuple):
     """What a distance is made of, as in `RetrievalSettings`."""
 
     latent: float
@@ -63,7 +63,9 @@ class Weights(NamedTuple):
     finish: float
 
 
-def nearest_assets(library: Library, shelves: Shelves, tastes: Tastes, asks: Asks, weights: Weights, shortlist: int) -> tuple[Ints, Floats]:
+def nearest_assets(
+    assets: AssetArrays, shelves: Shelves, tastes: Tastes, asks: Asks, weights: DistanceWeights, shortlist: int
+) -> tuple[Ints, Floats]:
     """Return the row (P,) of the asset that suits each ask best, -1 where there is none, and its distance (P,) without its finish.
 
     The distance is `weights.latent` times the root mean square of the standardised latent difference plus `weights.size` times that of the
@@ -71,14 +73,16 @@ def nearest_assets(library: Library, shelves: Shelves, tastes: Tastes, asks: Ask
     taste's cost. Of the `shortlist` nearest that is taken which is nearest with `weights.finish` added for each STEP between its
     finish and the wished one. Ties go to the smaller row.
     """
-    asked, own = (np.ascontiguousarray(np.log(np.maximum(of.sizes, SMALLEST))) for of in (asks, library))
+    asked, own = (np.ascontiguousarray(np.log(np.maximum(of.sizes, SMALLEST))) for of in (asks, assets))
     wanted = asks._replace(sizes=asked, latents=np.ascontiguousarray(asks.latents))
-    rows, distances = _nearest(library._replace(sizes=own), shelves, tastes, wanted, weights, shortlist)
+    rows, distances = _nearest(assets._replace(sizes=own), shelves, tastes, wanted, weights, shortlist)
     return rows, distances
 
 
 @compiled
-def _nearest(library: Library, shelves: Shelves, tastes: Tastes, asks: Asks, weights: Weights, shortlist: int) -> tuple[Ints, Floats]:
+def _nearest(
+    assets: AssetArrays, shelves: Shelves, tastes: Tastes, asks: Asks, weights: DistanceWeights, shortlist: int
+) -> tuple[Ints, Floats]:
     """See `nearest_assets`; sizes are logarithms."""
     rows, distances = np.full(len(asks.shelf), -1, np.int64), np.full(len(asks.shelf), np.inf)
     near, nearest = np.empty(shortlist), np.empty(shortlist, np.int64)
@@ -89,12 +93,12 @@ def _nearest(library: Library, shelves: Shelves, tastes: Tastes, asks: Asks, wei
         shelf = shelves.rows[shelves.start[k] : shelves.start[k + 1]]
         any_opens, count = False, 0
         for row in shelf:
-            any_opens |= library.openable[row]
+            any_opens |= assets.openable[row]
         for row in shelf:
-            shape = ((asks.latents[p] - library.latents[row]) ** 2).mean()
-            ratio = ((asks.sizes[p] - library.sizes[row]) ** 2).mean()
+            shape = ((asks.latents[p] - assets.latents[row]) ** 2).mean()
+            ratio = ((asks.sizes[p] - assets.sizes[row]) ** 2).mean()
             far = weights.latent * np.sqrt(shape) + weights.size * np.sqrt(ratio)
-            if any_opens and not library.openable[row]:
+            if any_opens and not assets.openable[row]:
                 far = (far + weights.offset) * weights.openable
             if tastes.other[taste, row]:
                 far += tastes.cost[taste]
@@ -108,7 +112,7 @@ def _nearest(library: Library, shelves: Shelves, tastes: Tastes, asks: Asks, wei
                 near[place], nearest[place] = far, row
         best = np.inf
         for j in range(count):
-            off = np.sqrt(((library.finishes[nearest[j]] - tastes.finishes[taste, shelves.group[k]]) ** 2).sum())
+            off = np.sqrt(((assets.finishes[nearest[j]] - tastes.finishes[taste, shelves.group[k]]) ** 2).sum())
             cost = near[j] + weights.finish * (0.0 if np.isnan(off) else min(off / STEP, MOST_STEPS))
             if cost < best:
                 best, rows[p], distances[p] = cost, nearest[j], near[j]

@@ -23,13 +23,11 @@ def test_what_an_open_door_does_not_help_waits_for_nothing():
 
 
 def test_the_catalogue_says_the_same(tmp_path):
-    """What the builders declare is found again in their files, of every form that does and one a category that does not; a key under a flap can travel, it only cannot be reached."""
-    by_form = {(m.category, m.form): m for m in catalogue(0).partnet}.values()
-    waiting = [m for m in by_form if any(mover.after for mover in shape_of(m).movers)]
-    models = [*waiting, *{m.category: m for m in by_form if m not in waiting}.values()]
-    write_partnet(models, tmp_path)
+    """What the builders declare is found again in their files; a key under a flap can travel, it only cannot be reached."""
+    by_form = {(m.category, m.form): m for m in catalogue(0).partnet}
+    write_partnet(tuple(by_form.values()), tmp_path)
     declared = 0
-    for model in models:
+    for model in by_form.values():
         movers = shape_of(model).movers
         names = {mover.name: f"joint_{k}" for k, mover in enumerate(movers)}
         read = read_shape(Folder.at(tmp_path / model.model_id), model.model_id, 64)
@@ -40,4 +38,4 @@ def test_the_catalogue_says_the_same(tmp_path):
                 after = joints[names[mover.name]].after
                 assert set(after) == {names[name] for name in mover.after}, (model.model_id, mover.name)
                 declared += bool(after)
-    assert declared >= len(waiting) >= 5
+    assert declared >= 3

@@ -54,12 +54,23 @@ def test_an_asset_that_is_asked_for_exactly_is_found(index):
         np.testing.assert_allclose(match.size, index.sizes[row])
 
 
-def test_matches_are_of_the_category(index):
+def distances(index, shelf, size, latent):
+    """How far the assets of a shelf are from one ask, by the formula."""
+    shape = np.sqrt((((latent - index.mean) / index.spread - index.latents[shelf]) ** 2).mean(-1))
+    ratio = np.sqrt((np.log(size / index.sizes[shelf]) ** 2).mean(-1))
+    far = 0.3 * shape + 2.0 * ratio
+    openable = index.openable[shelf]
+    return np.where(openable, far, (far + 0.15) * 1.5) if openable.any() else far
+
+
+def test_matches_are_of_the_category_and_nearest(index):
     rng = seeds.generator(1, "asks")
     categories = [str(c) for c in rng.choice(list(SHELVES), 50)]
     sizes, latents = rng.uniform(0.3, 2.2, (50, 3)), rng.normal(0, 1, (50, 32))
-    for category, match in zip(categories, matches(index, categories, sizes, latents), strict=True):
-        assert index.categories[index.row(match.asset_id)] == category
+    for p, match in enumerate(matches(index, categories, sizes, latents)):
+        shelf = index.shelves[categories[p]]
+        assert index.categories[index.row(match.asset_id)] == categories[p]
+        assert match.distance == pytest.approx(distances(index, shelf, sizes[p], latents[p]).min())
 
 
 def test_one_by_one_is_as_all_at_once(index):
