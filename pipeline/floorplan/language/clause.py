@@ -112,8 +112,7 @@ class Clause:
         """Take a group into the list in front of the next relation."""
         before = next((x for x in reversed(self.sentence[:k]) if x.kind not in {"det", "size", "adj"}), None)
         if before is None or not self.run or before.kind not in {*LISTING, "np", "amount", "open", "close"}:
-            self.run = []
-            self.verb = self.single = False
+            self.run, self.verb, self.single = [], False, False
         elif self.objects and set(ids_of(self.run)) == set(self.objects):
             self.run = []  # what was given to somebody is no part of a new list
         self.run.append(e)
@@ -145,7 +144,8 @@ class Clause:
         kind = self.stock.get(plural[0]).type
         kind = self.state.parted if e.value == "rest" and any(r.open_slot for r in self.stock.of(self.state.parted)) else kind
         if e.value == "group" and len(plural) == 1:
-            return tuple(i for i in each if i[0] != "*" and self.stock.get(i).type == kind)
+            two = len(each) == 2 and any(x.kind == "verb" for x in self.sentence[k + 1 : k + 2])  # "... They are joined."
+            return each if two else tuple(i for i in each if i[0] != "*" and self.stock.get(i).type == kind)
         free = [r for r in self.stock.of(kind) if r.open_slot]
         if e.value in {"rest", "some"}:
             return tuple(r.id for r in free) or plural

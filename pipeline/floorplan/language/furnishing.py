@@ -215,6 +215,8 @@ class Scan:
 
     def amount(self, k: int) -> tuple[int, int, int | None] | None:
         """Return (length, least, most) of an amount at word k: bounds, ranges, articles, negations."""
+        if pair := self.length(k, "pair"):
+            return pair + self._filler(k + pair), 2, 2
         bound = next((b for b in ("least", "most", "exactly", "between") if self.length(k, b)), "")
         at = k + self.length(k, "least", "most", "exactly", "between")
         at += self.length(at, "with", "article") if bound else 0  # 至少放三件
@@ -256,12 +258,11 @@ class Scan:
         return self.claims
 
     def _put(self, kind: Kind, first: int, last: int, name: str = "", least: int = 0, most: int | None = None, value: float = 0.0) -> int:
-        """Note a claim with the bounds that follow ("four chairs or more"); return its length in words.
-
-        "Eight pieces, everything nordic": what a comma parts is said of something else.
-        """
+        """Note a claim with the bounds that follow ("four chairs or more"), and the whole home where that stands by it; return its length in words."""
         more, fewer = (self.length(last, side) if kind in {"count", "pieces"} else 0 for side in ("more", "fewer"))
         last, least, most = last + (more or fewer), 0 if fewer and not more else least, None if more else most
+        if kind == "count" and (least, most) == (1, None) and (sides := self.length(last, "sides")):
+            last, least, most = last + sides, 2, 2
         begin = self.stops[bisect.bisect_left(self.stops, first) - 1] + 1
         left = next((j for j in range(first - 1, max(begin, first - NEAR) - 1, -1) if self.text(j) in COMMAS), max(begin, first - NEAR) - 1)
         right = next((j for j in range(last, last + NEAR - 1) if self.text(j) in COMMAS), last + NEAR - 1)

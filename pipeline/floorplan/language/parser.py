@@ -296,6 +296,10 @@ def _clash(message: str, claims: Sequence[Claim], claim: Claim, prompt: str) -> 
     raise ImpossibleError(message, "keep one of the two", words)
 
 
+def _has_comma(text: str) -> bool:
+    return "," in text or "，" in text
+
+
 class _Place:
     """Tells which rooms a claim means."""
 
@@ -319,7 +323,7 @@ class _Place:
         before = [m for m in self.named if begin <= m.start and m.end <= claim.start]
         after = [m for m in self.named if claim.end <= m.start and m.end <= end]
         gap = self.prompt[claim.end : after[0].start] if after else " " * FARTHEST
-        inward = claim.inward and len(gap) < FARTHEST and "," not in gap
+        inward = claim.inward and len(gap) < FARTHEST and not _has_comma(gap)
         if inside := [m for m in self.named if claim.start <= m.start and m.end <= claim.end]:
             return inside[0].ids  # "at least half of the living room must stay free"
         if claim.home or (claim.kind == "style" and not after and not before):
@@ -335,7 +339,7 @@ class _Place:
             near = after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
             return near if claim.kind != "count" else likely[0] if likely and claim.least else ()
         lead = self.prompt[before[-1].end : min(c.start for c in self.claims if c.start >= before[-1].end)]
-        if len(before) > 1 and "," in lead and {*before[-2].ids, *before[-1].ids} in self.compared:
+        if len(before) > 1 and _has_comma(lead) and {*before[-2].ids, *before[-1].ids} in self.compared:
             before = before[:-1]  # "a study smaller than the bedroom, with a desk"
         room, usual = before[-1], self._natural(claim, before[-1])
         if self._dwelling(room) and not (claim.plural and usual):
@@ -345,7 +349,7 @@ class _Place:
         host = self.host if follows and (not usual or any(self.kinds[i] in natural(claim.name) for i in self.host)) else ()
         lead = self.prompt[room.end : claim.start] if barred else lead
         studio = [(i,) for i, kind in self.kinds.items() if kind == "studio_room" and natural(claim.name) != ("kitchen",)]
-        if host or ((likely or studio) and not usual and "," in lead):
+        if host or ((likely or studio) and not usual and _has_comma(lead)):
             self.host, self.until = host or (likely or studio)[0], claim.end
             return self.host  # "a studio with a bathroom, put a bed and a desk in it"
         if usual or (joined and self._led(room, claim)):

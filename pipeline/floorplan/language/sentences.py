@@ -127,9 +127,11 @@ def _enter(c: Clause, k: int, e: Token) -> int:
 
 def _pron(c: Clause, k: int, e: Token) -> None:
     """Read a pronoun: the rooms that it stands for are spoken of next."""
-    behind = c.near(k + 2) if e.value == "one" and (ahead := c.near(k + 1)) is not None and ahead.kind == "verb" else None
+    verb = any(x.kind == "verb" for x in c.sentence[k + 1 : k + 2])
+    behind = c.near(k + 2) if e.value == "one" and verb else None
     named = behind.ids if behind is not None else ()  # "one is a guest room"
-    group = named or c.point(e, k, c.subject if e.value == "it" and (c.objects or c.run) else ())
+    known = e.value == "it" and (c.objects or len(c.run) > verb)  # but "there is one bath, it is ..."
+    group = named or c.point(e, k, c.subject if known else ())
     if group:
         c.stands_for(e, group)
         c.subject = group if e.value != "it" or not c.subject else c.subject
@@ -254,9 +256,6 @@ def _emit(c: Clause, e: Token, left: Group, group: Group) -> None:
         c.state.say(cue, left, group, e)
 
 
-# ways
-
-
 def except_rooms(c: Clause, k: int, e: Token) -> int:
     """Read "all rooms but the pantry open off the hall": those that are left out, and who goes on."""
     group, j = c.after(k + 1, "except", ())
@@ -334,16 +333,17 @@ def _owners(c: Clause, e: Token, before: Token | None) -> Group:
 
 def _give(c: Clause, k: int, e: Token, owners: Group) -> int:
     """Give bedrooms what follows: bathrooms, closets, balconies, as many as there are owners."""
-    j, end, joined = k + 1, k + 1, ""
+    j, end, joined, bare = k + 1, k + 1, "", False
     given: Group = ()
     while (x := c.near(j)) is not None:
         if x.kind == "np" and x.type == "bedroom" and not given and not x.ids and any(y.suite for y in c.sentence[:k]):
             x.ids, joined, end = owners, "", j + 1  # "each suite has a bedroom of 18 m², its own bathroom ..."
             c.measures(x)
         elif x.kind == "np":
-            if x.banned or x.type not in PERSONAL or (given and not joined) or not _theirs(c, j, owners, joined):
+            if x.banned or x.type not in PERSONAL or (given and not joined) or not _theirs(c, j, owners, joined, bare=bare):
                 break
             ids = _things(c, j, owners)
+            bare = bare if given else not (x.det or x.number)
             c.give(ids, owners, x)
             c.measures(x)
             given, joined, end = ids, "", j + 1
@@ -358,12 +358,14 @@ def _give(c: Clause, k: int, e: Token, owners: Group) -> int:
     return end
 
 
-def _theirs(c: Clause, j: int, owners: Group, joined: str) -> bool:
-    """Whether the room at j is the owners' own, and not one of the home's that a list goes on with."""
-    x, own = c.sentence[j], "own" in c.sentence[j].det
-    number = x.number or 1
+def _theirs(c: Clause, j: int, owners: Group, joined: str, *, bare: bool) -> bool:
+    """Whether the room at j is the owners' own, and not one of the home's that a list goes on with; `bare`: the list began without an article."""
+    x, own, number = c.sentence[j], "own" in c.sentence[j].det, c.sentence[j].number or 1
+    new = (
+        joined == "comma" and bare and not own and (x.number or "indefinite" in x.det)
+    )  # "un dormitorio con terraza, un baño y un despacho"
     known = x.definite and (len(owners) > 1 or len(c.stock.of(x.type)) > 1 or bool(x.ids))
-    if x.role in {"shared", "guest"} or known or number > len(owners) or 1 < number < len(owners):
+    if new or x.role in {"shared", "guest"} or known or number > len(owners) or 1 < number < len(owners):
         return False
     if joined == "comma" and not own:
         rest = [y for y in c.sentence[j + 1 :] if not (y.kind in {"comma", "det"} or (y.kind == "np" and y.type in PERSONAL))]

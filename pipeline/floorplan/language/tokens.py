@@ -228,9 +228,17 @@ def _relabel(tokens: Sequence[Token], words: Words) -> list[Token]:
     return relabelled
 
 
+def _top_level(tokens: Sequence[Token]) -> list[Token]:
+    """Return the tokens with a number for "the top floor": the highest storey of those that are counted, else the one above those that are named from the ground on, else the upper of two."""
+    counted = max((int(t.number) for t in tokens if t.value == "storeys"), default=0)
+    named = {int(t.value) for t in tokens if t.kind == "level" and t.value.isdigit()}
+    top = counted - 1 if counted > 1 else max(1, next(n for n in itertools.count() if n not in named))
+    return [replace(t, value=str(top)) if (t.kind, t.value) == ("level", "top") else t for t in tokens]
+
+
 def on_each_level(tokens: Sequence[Token]) -> list[Token]:
     """Say storey by storey what is said of each: "a bathroom on each floor" is one downstairs, one upstairs; of two where nobody has counted them."""
-    spread = list(tokens)
+    spread = _top_level(tokens)
     count = next((int(t.number) for t in tokens if t.value == "storeys" and t.number > 1), 2)
     for said in [t for t in tokens if t.value == "each_floor"]:
         k = next(j for j, t in enumerate(spread) if t is said)
