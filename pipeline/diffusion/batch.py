@@ -53,12 +53,8 @@ class RoomBatch(Rows):
         return len(self.layout)
 
     def trimmed(self) -> RoomBatch:
-        """Drop token places that no room uses. For training, where shapes may vary."""
-        return self.first(int(self.mask.sum(1).max()))
-
-    def first(self, tokens: int) -> RoomBatch:
-        """Drop all but the first token places of rooms that use no others; real tokens first, in their order."""
-        order = (~self.mask).to(torch.uint8).argsort(dim=1, stable=True)[:, :tokens]
+        """Drop token places that no room uses; real tokens first, in their order."""
+        order = (~self.mask).to(torch.uint8).argsort(dim=1, stable=True)[:, : int(self.mask.sum(1).max())]
         row = torch.arange(len(self), device=order.device)[:, None]
         return replace(self, **{f.name: getattr(self, f.name)[row, order] for f in fields(Floor)})
 

@@ -10,20 +10,22 @@ is to be predicted, at every level alike.
 from dataclasses import dataclass
 
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 from pipeline.diffusion.batch import RoomBatch
+from pipeline.diffusion.context import KINDS
 
 WALL_FEATURES = 14
 PAIR_FEATURES = 22
 WALL_NOISE = 5  # features in units of the noise
 PAIR_NOISE = 10
 WALL_MOVES, WALL_TURNS, PAIR_MOVES, PAIR_TURNS = 6, 4, 11, 4
+FAR = 3.0  # in units of the noise: what is farther away is not a matter of noise
 
 
 @dataclass(frozen=True, slots=True)
 class Boxes:
-    """B x N boxes, room frame: `centre` (B, N, 2), `bottom`, `height` (B, N), `half` (B, N, 2) [m]; `axis` (B, N, 2) = (cos, sin) of yaw.
+    """B x N boxes, or T of a list, room frame: `centre` (B, N, 2), `bottom`, `height` (B, N), `half` (B, N, 2) [m]; `axis` (B, N, 2) = (cos, sin) of yaw.
 
     `axis` is the direction of the width; the front is (sin, -cos). It is as long as the yaw is certain.
     """
@@ -47,16 +49,16 @@ def boxes_of(metric: Tensor) -> Boxes:
 
 @dataclass(frozen=True, slots=True)
 class Relations:
-    """What is known of pairs (B, N, K): `far` (..., F) squashed lengths and angles, `near` (..., G) in units of the noise.
+    """What is known of pairs (B, N, K), or (P,) of a list of them: `far` (..., F) squashed lengths and angles, `near` (..., G) in units of the noise.
 
-    `moves` (B, N, K, P, 2) and `turns` (B, N, K, Q, 2) are directions that a pair offers for the position and the axis of
-    the first; those that would close a gap are as long as the gap in units of the noise, up to 3.
+    `offers` (..., 2 (P + Q)): P directions that a pair offers for the position of the first, then Q for its axis; those that would
+    close a gap are as long as the gap in units of the noise, up to FAR. Of walls and openings `kind` (..., KINDS) says what they are, as 0 and 1.
     """
 
     far: Tensor
     near: Tensor
-    moves: Tensor
-    turns: Tensor
+    offers: Tensor
+    kind: Tensor | None = None
 
 
 def wall_relations(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Relations:
@@ -81,7 +83,8 @@ def wall_relations(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Relations:
     middle = ((start + stop) / 2 - centre) / 3
     moves = [near[..., :1] * normals, near[..., 1:2] * alongs, near[..., 2:3] * alongs, normals, alongs, middle]
     turns = [near[..., 3:4] * normals, near[..., 4:5] * alongs, normals, alongs]
-    return Relations(torch.stack(columns, -1), near / 3, torch.stack(moves, -2), torch.stack(turns, -2))
+    kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()[:, None].expand(-1, distance.shape[1], -1, -1)
+    return Relations(torch.stack(columns, -1), near / FAR, torch.cat([*moves, *turns], -1), kind)
 
 
 def pair_relations(boxes: Boxes, blur: Tensor) -> Relations:
@@ -107,7 +110,7 @@ def pair_relations(boxes: Boxes, blur: Tensor) -> Relations:
     closing = (near[..., :4] * (places / 0.05).clamp(-1, 1))[..., None] * ways
     moves = [closing, near[..., 4:8, None] * ways, others, apart[..., None, :] / 3]
     turns = [near[..., 8:, None] * others, others]
-    return Relations(torch.cat(columns, -1), near / 3, torch.cat(moves, -2), torch.cat(turns, -2))
+    return Relations(torch.cat(columns, -1), near / FAR, torch.cat([*moves, *turns], -2).flatten(3))
 
 
 def dot(a: Tensor, b: Tensor) -> Tensor:
@@ -116,19 +119,23 @@ def dot(a: Tensor, b: Tensor) -> Tensor:
 
 
 def in_noise(lengths: Tensor, angles: Tensor, blur: Tensor) -> Tensor:
-    """Return lengths (B, N, K, P) [m] and angles (B, N, K, Q) in units of the noise (B, 2), cut at 3: what is farther away is not a matter of noise."""
-    return torch.cat([lengths / blur[:, None, None, :1], angles / blur[:, None, None, 1:]], -1).clamp(-3, 3)
+    """Return lengths (B, N, K, P) [m] and angles (B, N, K, Q) in units of the noise (B, 2), cut at FAR."""
+    return torch.cat([lengths / blur[:, None, None, :1], angles / blur[:, None, None, 1:]], -1).clamp(-FAR, FAR)
 
 
 def axis_deviations(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Tensor:
-    """Return how far each box's axis is from the nearest of its room's directions (B, N, 2), in units of the noise, up to 3.
+    """Return how far each box's axis is from the nearest of its room's directions (B, N, 2), in units of the noise, up to FAR.
 
     The room's directions are the normals of its walls; the nearest is taken for each box.
     """
     fits = boxes.axis @ rooms.normal.transpose(1, 2)  # (B, N, M)
     fits = fits.masked_fill(~rooms.walls[:, None], -9.0)
     nearest = torch.take_along_dim(rooms.normal, fits.argmax(-1)[..., None], 1)
-    off = (boxes.axis - nearest) / blur[:, None, 1:]
+    return shortened((boxes.axis - nearest) / blur[:, None, 1:])
+
+
+def shortened(off: Tensor) -> Tensor:
+    """Return vectors (..., 2), no longer than FAR."""
     length: Tensor = torch.linalg.vector_norm(off + 1e-9, dim=-1, keepdim=True)
-    shortened: Tensor = off * (3 / length).clamp_max(1.0)
-    return shortened
+    short: Tensor = off * (FAR / length).clamp_max(1.0)
+    return short

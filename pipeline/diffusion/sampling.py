@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import torch
@@ -17,18 +17,26 @@ from pipeline import seeds, taxonomy
 from pipeline.arrays import Bools, Floats, Ints
 from pipeline.diffusion.batch import RoomBatch, room_batch
 from pipeline.diffusion.checkpoint import Header, load_weights
-from pipeline.diffusion.codec import CHANNELS
+from pipeline.diffusion.codec import CHANNELS, Codec
 from pipeline.diffusion.context import Floor, Library, Proposal, RoomContext, floor_tokens
 from pipeline.diffusion.guidance import PRESSED, Guidance
 from pipeline.diffusion.inventory import DRAWS, Ask, Inventory, draw_inventories, room_features
-from pipeline.diffusion.schedule import denoise, levels, paper_levels
-from pipeline.diffusion.set_transformer import FEW, SetTransformer
-from pipeline.diffusion.settings import MOST_SLOTS, SampleSettings
+from pipeline.diffusion.schedule import Expect, denoise, levels, paper_levels
+from pipeline.diffusion.set_transformer import FEW
+from pipeline.diffusion.settings import SampleSettings
 from pipeline.errors import ContentError
 
 Key = tuple[int, ...]  # home index, room number, attempt; behind them which draw it is, from the second on
-# Slots and floor tokens that the rooms of a batch are padded to: few shapes, for an evaluation costs more by its operations than by its rooms.
-SLOTS, TOKENS = (6, 12, 24, MOST_SLOTS), (16, 32)
+
+
+class Denoiser(Protocol):
+    """What the sampler asks of a denoiser: the constants of its channels, and for a batch of rooms a function that is called level after level."""
+
+    codec: Codec
+
+    def expectation(self, rooms: RoomBatch, classes: Tensor) -> Expect:
+        """Return what is expected of noisy slots (B, N, 40) at a level, for rooms whose objects are of `classes` (B, N), C for padding."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +47,7 @@ class Sampler:
     keyed, a batch holds rooms of one shape, and matrix products give a row the same bits whatever the other rows, from FEW rows on.
     """
 
-    net: SetTransformer
+    net: Denoiser
     inventory: Inventory
     header: Header
     settings: SampleSettings
@@ -109,51 +117,45 @@ class Sampler:
         arranged: list[tuple[float, list[Proposal]]] = [(0.0, []) for _ in rooms]
         layouts = self._layouts(rooms)
         with one_thread(), torch.no_grad():
-            for slots, tokens, part in self._batches(floors, inventories):
+            for part in self._batches(inventories):
                 conditioning = room_batch([floors[i] for i in part], [layouts[i] for i in part], [rooms[i].height for i in part])
-                classes = np.full((len(part), slots), len(self.header.norm.classes))
+                classes = np.full((len(part), max(len(inventories[i]) for i in part)), len(self.header.norm.classes))
                 for row, i in enumerate(part):
                     classes[row, : len(inventories[i])] = inventories[i]
                 labels = torch.from_numpy(classes).to(self.net.codec.mean.device)
-                clean, depths = self._batch(conditioning.first(tokens), labels, [keys[i] for i in part], [rooms[i].taste for i in part])
+                clean, depths = self._batch(conditioning, labels, [keys[i] for i in part], [rooms[i].taste for i in part])
                 for i, x0, mine, depth in zip(part, clean, labels, depths.tolist(), strict=True):
                     arranged[i] = depth, self.net.codec.proposals(x0, mine, rooms[i])
         return arranged
 
-    def _batches(self, floors: Sequence[Floor], inventories: Sequence[Ints]) -> Iterator[tuple[int, int, list[int]]]:
-        """Cut rooms into batches of one shape: yields slots, floor tokens, and the indices of the rooms. A room's shape is its own."""
-        slots = np.array(SLOTS)[np.searchsorted(SLOTS, [len(h) for h in inventories])]
-        tokens = np.array(TOKENS)[np.searchsorted(TOKENS, [int(f.mask.sum()) for f in floors])]
-        for shape in sorted({(int(s), int(t)) for s, t, h in zip(slots, tokens, inventories, strict=True) if len(h)}):
-            alike = [i for i, h in enumerate(inventories) if len(h) and (slots[i], tokens[i]) == shape]
-            for start in range(0, len(alike), self.settings.batch):
-                yield *shape, alike[start : start + self.settings.batch]
+    def _batches(self, inventories: Sequence[Ints]) -> Iterator[list[int]]:
+        """Cut the rooms that hold something into batches, those of like numbers of objects together: yields their indices."""
+        sizes = np.array([len(held) for held in inventories])
+        filled = [int(i) for i in np.argsort(sizes, kind="stable") if sizes[i]]
+        for start in range(0, len(filled), self.settings.batch):
+            yield filled[start : start + self.settings.batch]
 
     def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[Key], tastes: Sequence[Any]) -> tuple[Tensor, Floats]:
         """Sample one padded batch of objects of `classes` (batch, slots): x0 (batch, slots, 40) on their device, and how deep the worst overlap of each room is [m]."""
         device = classes.device
         rooms = rooms.to(device)
-        code, ones = self.net.floor_code(rooms, classes), torch.ones(len(keys), device=device)
         names = self.header.norm.classes
         guidance = Guidance.of(
             self.net.codec, rooms, tastes, classes, self.library, openable_classes(names), tuck_roles(names), self.settings
         )
 
-        before: Tensor | None = None
-
-        def expect(x: Tensor, level: float) -> Tensor:
-            nonlocal before
-            with torch.inference_mode():
-                before = self.net.expected(x, classes, level * ones, rooms, code, before)
-            return before
-
         rngs = [seeds.generator(self.seed, "diffusion", *key) for key in keys]
 
+        counts = (classes < len(names)).sum(1).tolist()
+
         def noise() -> Tensor:
-            shape = (classes.shape[1], CHANNELS)
-            return torch.from_numpy(np.stack([rng.standard_normal(shape, np.float32) for rng in rngs])).to(device)
+            drawn = torch.zeros(*classes.shape, CHANNELS)
+            for row, rng, count in zip(drawn, rngs, counts, strict=True):
+                row[:count] = torch.from_numpy(rng.standard_normal((count, CHANNELS), np.float32))
+            return drawn.to(device)
 
         count = self.settings.evaluations
+        expect = self.net.expectation(rooms, classes)
         x0 = denoise(expect, partial(guidance.step, self.net.codec), noise, levels(count) if count else paper_levels(), self.settings.eta)
         return x0, guidance.pressure(self.net.codec, x0)
 

@@ -25,6 +25,8 @@ from torch import Tensor, nn
 from pipeline.diffusion.batch import RoomBatch
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec, Normalisation
 from pipeline.diffusion.context import KINDS
+from pipeline.diffusion.padded import PaddedRooms
+from pipeline.diffusion.ragged import RaggedRooms
 from pipeline.diffusion.relations import (
     PAIR_FEATURES,
     PAIR_MOVES,
@@ -34,13 +36,11 @@ from pipeline.diffusion.relations import (
     WALL_MOVES,
     WALL_NOISE,
     WALL_TURNS,
-    axis_deviations,
     boxes_of,
-    pair_relations,
-    wall_relations,
 )
-from pipeline.diffusion.schedule import alpha_sigma
-from pipeline.diffusion.settings import ModelSettings
+from pipeline.diffusion.schedule import Expect, alpha_sigma, alpha_sigma_of
+from pipeline.diffusion.settings import MOST_SLOTS, ModelSettings
+from pipeline.diffusion.surroundings import Rooms, Surroundings
 
 FLOOR_FEATURES = 5 + len(KINDS)
 WALL_OFFERS, PAIR_OFFERS = WALL_MOVES + WALL_TURNS, PAIR_MOVES + PAIR_TURNS
@@ -48,27 +48,19 @@ OWN_WAYS = (
     5  # directions that an object offers itself: noisy position, axis and front, estimated axis, and the way to the room's directions
 )
 MOST = 8.0  # of a clean channel, in standard deviations
-HIDDEN = -1e9  # score of what is not there
 FEW = 4  # products of fewer rows are summed in another order
 Geometry = slice(0, 8)
 SUBLAYERS = 3  # objects, floor, thought
 MODULATIONS = 3 * SUBLAYERS  # shift, scale and gate of each
 
 
-class Surroundings(NamedTuple):
-    """What a layer looks at: `relation` (B, N, M, R) of each pair, `bias` (B, H, N, M) of its scores."""
-
-    relation: Tensor
-    bias: Tensor
-
-
 class FloorCode(NamedTuple):
     """What does not change between sampling steps.
 
-    `keys`: of walls and openings (B, H, M, c), keys and values for each layer, then the pointers' keys; `room` (B, d).
+    `keys`: of walls and openings, keys and values for each layer, then the pointers' keys; `room` (B, d).
     """
 
-    keys: tuple[Tensor, ...]
+    keys: Sequence[Tensor]
     room: Tensor
 
 
@@ -77,7 +69,6 @@ class Block(nn.Module):
 
     def __init__(self, width: int, heads: int, pair: int, wall: int) -> None:
         super().__init__()
-        self.heads = heads
         self.look = nn.Linear(width, 3 * width)
         self.objects = nn.Linear(width + heads * pair, width)
         self.search = nn.Linear(width, width)
@@ -85,14 +76,19 @@ class Block(nn.Module):
         self.think = nn.Sequential(nn.Linear(width, 3 * width), nn.SiLU(), nn.Linear(3 * width, width))
 
     def forward(
-        self, x: Tensor, others: Surroundings, floor: Surroundings, keys: tuple[Tensor, Tensor], modulation: Sequence[Tensor]
+        self,
+        x: Tensor,
+        rooms: Rooms,
+        others: Surroundings,
+        floor: Surroundings,
+        keys: Sequence[Tensor],
+        modulation: Sequence[Tensor],
+        layer: int,
     ) -> Tensor:
-        """Return the new tokens (B, N, d). `keys` of the floor and their values (B, H, M, c); `modulation`: nine times (B, 1, d)."""
-        query, key, value = split_heads(self.look(modulate(x, *modulation[:2])), 3, self.heads)
-        context = attend(weights(query, key, others.bias), value, others.relation)
+        """Return the new tokens (..., d). `keys` of the floor and their values; `modulation`: nine tensors that go with the tokens."""
+        context = rooms.look_around(self.look(modulate(x, *modulation[:2])), others, layer)
         x = torch.addcmul(x, modulation[2], self.objects(context))
-        (query,) = split_heads(self.search(modulate(x, *modulation[3:5])), 1, self.heads)
-        context = attend(weights(query, keys[0], floor.bias), keys[1], floor.relation)
+        context = rooms.look_at_floor(self.search(modulate(x, *modulation[3:5])), keys[0], keys[1], floor, layer)
         x = torch.addcmul(x, modulation[5], self.floor(context))
         return torch.addcmul(x, modulation[8], self.think(modulate(x, *modulation[6:8])))
 
@@ -123,50 +119,36 @@ class Pass(nn.Module):
             ones = torch.tensor([0.0, 1.0, 1.0]).repeat(SUBLAYERS * layers + 1)[: MODULATIONS * layers + 2]
             self.modulation.bias.copy_(ones.repeat_interleave(width))
 
-    def by_layer(self, bias: Tensor) -> tuple[Tensor, ...]:
-        """Split biases (B, N, M, (layers + 1) H) into (B, H, N, M) for each layer, and for the pointer."""
-        biases: tuple[Tensor, ...] = bias.unflatten(-1, (-1, self.heads)).permute(3, 0, 4, 1, 2).contiguous().unbind(0)
-        return biases
-
     def forward(
-        self, tokens: Tensor, slots: NoisySlots, guess: Tensor, rooms: RoomBatch, keys: tuple[Tensor, ...], condition: Tensor
+        self, tokens: Tensor, slots: NoisySlots, guess: Tensor, rooms: Rooms, keys: Sequence[Tensor], condition: Tensor
     ) -> tuple[Tensor, Tensor]:
-        """Return the tokens, and the answer (B, N, 40) as directions and amounts; `guess` (B, N, 8) metric."""
+        """Return the tokens, and the answer (..., 40) as directions and amounts; `guess` (..., 8) metric."""
         boxes, blur = boxes_of(guess), slots.blur
-        pair, wall = pair_relations(boxes, blur), wall_relations(boxes, rooms, blur)
-        pairs = torch.cat([self.pairs(torch.cat([pair.far, pair.near], -1)), pair.near], -1)
-        kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()[:, None].expand(-1, guess.shape[1], -1, -1)
-        walls = torch.cat([self.walls(torch.cat([wall.far, wall.near, kind], -1)), wall.near], -1)
-        pair_bias = self.by_layer(self.pair_bias(pairs).masked_fill(slots.padding[:, None, :, None], HIDDEN))
-        wall_bias = self.by_layer(self.wall_bias(walls).masked_fill(~rooms.mask[:, None, :, None], HIDDEN))
-        modulation = by_room(self.modulation, condition)[:, None].chunk(MODULATIONS * self.layers + 2, -1)
-        axis = boxes.axis
-        own_guess = torch.cat([invariants(boxes.centre / 3, axis), boxes.bottom[..., None], boxes.height[..., None]], -1)
+        pair, wall = rooms.pairs(boxes, blur), rooms.walls(boxes, blur)
+        seen = torch.cat([self.pairs(torch.cat([pair.far, pair.near], -1)), pair.near], -1)
+        pairs = Surroundings(seen, rooms.pair_scores(self.pair_bias(seen)), pair.offers)
+        of_walls = [f for f in (wall.far, wall.near, wall.kind) if f is not None]
+        seen = torch.cat([self.walls(torch.cat(of_walls, -1)), wall.near], -1)
+        walls = Surroundings(seen, rooms.wall_scores(self.wall_bias(seen)), wall.offers)
+        modulation = rooms.to_objects(by_room(self.modulation, condition)).chunk(MODULATIONS * self.layers + 2, -1)
+        own_guess = torch.cat([invariants(boxes.centre / 3, boxes.axis), boxes.bottom[..., None], boxes.height[..., None]], -1)
         tokens = tokens + self.guess(own_guess)
         for i, block in enumerate(self.blocks):
             own = modulation[MODULATIONS * i : MODULATIONS * (i + 1)]
-            tokens = block(
-                tokens, Surroundings(pairs, pair_bias[i]), Surroundings(walls, wall_bias[i]), (keys[2 * i], keys[2 * i + 1]), own
-            )
+            tokens = block(tokens, rooms, pairs, walls, keys[2 * i : 2 * i + 2], own, i)
         features = modulate(tokens, *modulation[-2:])
         plain, ways, by_wall, by_pair = self.head(features).split(self.parts, -1)
-        to_walls, to_slots, slot_keys = split_heads(self.point(features), 3, self.heads)
-        mine = torch.stack([*slots.ways, axis, axis_deviations(boxes, rooms, blur)], -2)
-        goes = ways.unflatten(-1, (2, OWN_WAYS)) @ mine  # (B, N, 2, 2): move, turn
-        for query, key, bias, relation, amount, moves in (
-            (to_walls, keys[-1], wall_bias[-1], wall, by_wall, WALL_MOVES),
-            (to_slots, slot_keys, pair_bias[-1], pair, by_pair, PAIR_MOVES),
-        ):
-            goes = goes + sum_directions(weights(query, key, bias), torch.cat([relation.moves, relation.turns], -2), amount, moves)
-        return tokens, torch.cat([goes[:, :, 0], plain[..., :4], goes[:, :, 1], plain[..., 4:]], -1)
+        mine = torch.stack([*slots.ways, boxes.axis, rooms.axis_deviations(boxes, blur)], -2)
+        goes = ways.unflatten(-1, (2, OWN_WAYS)) @ mine  # (..., 2, 2): move, turn
+        goes = goes + rooms.take_offers(self.point(features), keys[-1], pairs, walls, by_wall, by_pair, (WALL_MOVES, PAIR_MOVES))
+        return tokens, torch.cat([goes[..., 0, :], plain[..., :4], goes[..., 1, :], plain[..., 4:]], -1)
 
 
 class NoisySlots(NamedTuple):
-    """What all passes share: `ways` (three of (B, N, 2)) of the noisy slots, `blur` (B, 2) of a position [m] and of an axis, `padding` (B, N)."""
+    """What all passes share: `ways` (three of (..., 2)) of the noisy slots, `blur` (B, 2) of a position [m] and of an axis."""
 
     ways: tuple[Tensor, ...]
     blur: Tensor
-    padding: Tensor
 
 
 class SetTransformer(nn.Module):
@@ -190,8 +172,8 @@ class SetTransformer(nn.Module):
         self.codec = Codec(self.norm, self.slot.weight.device)
         return self
 
-    def floor_code(self, rooms: RoomBatch, classes: Tensor) -> FloorCode:
-        """Encode the room and what it will hold, `classes` (B, N); independent of the noise level, so a sampler calls it once."""
+    def floor_code(self, rooms: RoomBatch, classes: Tensor, layout: Rooms | None = None) -> FloorCode:
+        """Encode the rooms and what they will hold, `classes` (B, N), for a `layout` of their objects, padded by default; independent of the noise level, so a sampler calls it once."""
         ends, middle = rooms.ends, rooms.ends.mean(2)
         length = torch.linalg.vector_norm(ends[:, :, 1] - ends[:, :, 0] + 1e-9, dim=-1)
         kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()
@@ -206,7 +188,10 @@ class SetTransformer(nn.Module):
         size = torch.cat([reach / 3, area.clamp_min(0.5).log()[:, None] - 2, rooms.height[:, None] - 2.7], -1)
         room = by_room(self.room, torch.cat([pooled, inventory, size], -1)) + self.layout(rooms.layout)
         parts = self.settings.passes * (2 * self.settings.layers + 1)
-        return FloorCode(split_heads(self.floor_keys(tokens), parts, self.settings.heads), room)
+        return FloorCode((layout or self._padded(rooms, classes)).split_keys(self.floor_keys(tokens), parts), room)
+
+    def _padded(self, rooms: RoomBatch, classes: Tensor) -> PaddedRooms:
+        return PaddedRooms(rooms, classes >= self.codec.classes, self.settings.heads)
 
     def forward(
         self,
@@ -221,14 +206,18 @@ class SetTransformer(nn.Module):
 
         `before` (B, N, >= 8): the clean channels that were expected before, at a level of more noise or at this one.
         """
-        code = code or self.floor_code(rooms, classes)
+        return self.answers(x, classes, level, self._padded(rooms, classes), code or self.floor_code(rooms, classes), before)
+
+    def answers(
+        self, x: Tensor, classes: Tensor, level: Tensor, rooms: Rooms, code: FloorCode, before: Tensor | None = None
+    ) -> tuple[Tensor, ...]:
+        """Return what each pass answers (..., 40) of slots x (..., 40) of `classes` (...), however the rooms stand in them."""
         condition = nn.functional.silu(by_room(self.level, level_features(level)) + code.room)
-        alpha, sigma = (v[:, None, None] for v in alpha_sigma(level))
-        spread = sigma[:, 0, 0].clamp_min(3e-3)
+        by_level = alpha_sigma(level)
+        alpha, sigma = (rooms.to_objects(v[:, None]) for v in by_level)
+        spread = by_level[1].clamp_min(3e-3)
         front = torch.stack([x[..., 7], -x[..., 6]], -1)
-        slots = NoisySlots(
-            (x[..., :2], x[..., YAW], front), torch.stack([spread * self.codec.reach, spread], -1), classes >= self.codec.classes
-        )
+        slots = NoisySlots((x[..., :2], x[..., YAW], front), torch.stack([spread * self.codec.reach, spread], -1))
         tokens = self.slot(torch.cat([invariants(x[..., :2], x[..., YAW]), x[..., 2:6], x[..., YAW.stop :]], -1)) + self.kind(classes)
         guess, answer, answers = (alpha * x if before is None else before)[..., Geometry], None, []
         per_pass = 2 * self.settings.layers + 1
@@ -254,7 +243,41 @@ class SetTransformer(nn.Module):
         answer: Tensor = self(x, classes, level, rooms, code, before)[-1]
         return clamp_channels(self.clean(x, answer, alpha, sigma))
 
-    def clean(self, x: Tensor, answer: Tensor, alpha: Tensor, sigma: Tensor) -> Tensor:
+    def expectation(self, rooms: RoomBatch, classes: Tensor) -> Expect:
+        """Return what is expected of slots x (B, N, 40), level after level of falling noise; `classes` (B, N), C for padding.
+
+        On a CPU the rooms stand in one list: an answer costs what is there, and has the same bits whichever other rooms are.
+        """
+        if classes.device.type != "cpu":
+            return self._expectation(classes, self._padded(rooms, classes), self.floor_code(rooms, classes))
+        copies = 1 if int((classes < self.codec.classes).sum()) >= FEW else FEW
+        everything, held = rooms.rows(torch.arange(len(classes)).repeat(copies)), classes.repeat(copies, 1)
+        there = held < self.codec.classes
+        layout = RaggedRooms.of(everything, there.sum(1), self.settings.heads)
+        padding = (0, MOST_SLOTS - held.shape[1])  # to one number of slots, for sums over them to have the same bits
+        code = self.floor_code(everything, nn.functional.pad(held, padding, value=self.codec.classes), layout)
+        expect = self._expectation(held[there], layout, code)
+
+        def expect_padded(x: Tensor, level: float) -> Tensor:
+            noisy = x.repeat(copies, 1, 1)
+            return torch.zeros_like(noisy).masked_scatter_(there[..., None], expect(noisy[there], level))[: len(classes)]
+
+        return expect_padded
+
+    def _expectation(self, classes: Tensor, layout: Rooms, code: FloorCode) -> Expect:
+        ones = torch.ones(len(code.room), device=classes.device)
+        before: Tensor | None = None
+
+        def expect(x: Tensor, level: float) -> Tensor:
+            nonlocal before
+            with torch.inference_mode():
+                answer = self.answers(x, classes, level * ones, layout, code, before)[-1]
+                before = clamp_channels(self.clean(x, answer, *alpha_sigma_of(level)))
+            return before
+
+        return expect
+
+    def clean(self, x: Tensor, answer: Tensor, alpha: Tensor | float, sigma: Tensor | float) -> Tensor:
         """Return the clean channels that an answer v stands for."""
         return alpha * x - sigma * answer
 
@@ -290,35 +313,6 @@ def polygon_area(rooms: RoomBatch) -> Tensor:
     a, b = rooms.ends[:, :, 0], rooms.ends[:, :, 1]
     cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     return 0.5 * torch.where(rooms.walls, cross, torch.zeros_like(cross)).sum(1)
-
-
-def split_heads(x: Tensor, parts: int, heads: int) -> tuple[Tensor, ...]:
-    """Split (B, N, parts * d) into `parts` tensors (B, H, N, d / H)."""
-    tensors: tuple[Tensor, ...] = x.unflatten(-1, (parts, heads, -1)).permute(2, 0, 3, 1, 4).contiguous().unbind(0)
-    return tensors
-
-
-def weights(query: Tensor, key: Tensor, bias: Tensor) -> Tensor:
-    """Return attention weights (B, H, N, M) of queries (B, H, N, c) and keys (B, H, M, c)."""
-    scores = torch.baddbmm(bias.flatten(0, 1), query.flatten(0, 1), key.flatten(0, 1).transpose(1, 2), alpha=1 / math.sqrt(query.shape[-1]))
-    return scores.view_as(bias).softmax(-1)
-
-
-def attend(weight: Tensor, value: Tensor, relation: Tensor) -> Tensor:
-    """Return what was seen (B, N, d + H R): values (B, H, M, c) and relations (B, N, M, R), each under the weights of each head."""
-    context = (weight @ value).transpose(1, 2).flatten(2)
-    return torch.cat([context, (weight.transpose(1, 2) @ relation).flatten(2)], -1)
-
-
-def sum_directions(weight: Tensor, directions: Tensor, amount: Tensor, moves: int) -> Tensor:
-    """Choose pairs by attention (B, H, N, M) and sum the directions (B, N, M, P, 2) that they offer, each with its `amount` (B, N, H P).
-
-    Returns the sums (B, N, 2, 2) of the first `moves` directions, and of the others.
-    """
-    heads, offers = weight.shape[1], directions.shape[3]
-    offered = (weight.transpose(1, 2) @ directions.flatten(3)).unflatten(-1, (offers, 2))  # (B, N, H, P, 2)
-    taken = (offered * amount.unflatten(-1, (heads, offers))[..., None]).sum(2)
-    return torch.stack([taken[:, :, :moves].sum(2), taken[:, :, moves:].sum(2)], 2)
 
 
 def modulate(x: Tensor, shift: Tensor, scale: Tensor) -> Tensor:

@@ -71,8 +71,13 @@ def borrowing(function: F) -> F:
     return _compiled(function, counting=False)
 
 
-def _compiled(function: F, *, counting: bool) -> F:
-    options: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": counting}
+def reordering(function: F) -> F:
+    """Compile a function as `borrowing` does whose sums may be taken in any order, and products and sums rounded once: it can use vectors for them."""
+    return _compiled(function, counting=False, fastmath={"contract", "reassoc", "nsz"})
+
+
+def _compiled(function: F, *, counting: bool, **more: Any) -> F:
+    options: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": counting, **more}
     try:
         return cast("F", numba.njit(cache=True, **options)(function))
     except RuntimeError:  # numba finds no folder for its cache

@@ -62,6 +62,24 @@ def test_padding_and_other_rooms_change_nothing(net, noisy):
 
 
 @torch.no_grad()
+def test_rooms_in_one_list_get_the_answers_of_padded_ones(net, noisy):
+    rooms, classes, x, _ = noisy
+    held = classes < net.codec.classes
+    for level in (-5.0, 0.0, 2.0, 6.0):
+        at = torch.full((len(x),), level)
+        padded, expect = net.expected(x, classes, at, rooms), net.expectation(rooms, classes)
+        listed = expect(x, level)
+        torch.testing.assert_close(listed[held], padded[held], atol=2e-3, rtol=1e-3)
+        again = net.expected(
+            x, classes, at, rooms, before=padded
+        )  # what was expected is seen the next time; in units of the noise, rounding grows
+        torch.testing.assert_close(expect(x, level)[held], again[held], atol=2e-2, rtol=1e-2)
+        assert not listed[~held].any()
+    assert held.any(1).all()
+    assert not held.all()
+
+
+@torch.no_grad()
 def test_a_shared_code_saves_nothing_but_time(net, noisy):
     rooms, classes, x, level = noisy
     code = net.floor_code(rooms, classes)
