@@ -16,8 +16,10 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
+from pipeline.arrays import Bools, Floats, Ints
 from pipeline.diffusion.context import KINDS, CategoryBounds, Floor
 from pipeline.diffusion.settings import InventorySettings
+from pipeline.geometry.compiled import compiled
 from pipeline.tensors import Checkpoint, advance, cosine, generator, initial
 
 MOST = 12  # of one class in one room; more are counted as this
@@ -156,26 +158,63 @@ def free_stretches(floor: Floor) -> NDArray[np.float64]:
 
     A door takes the square that its leaf turns in, where it turns into the room.
     """
-    start, stop = (floor.ends[:, k].astype(float) for k in (0, 1))
-    length = np.linalg.norm(stop - start, axis=1)
-    wall, opening = np.flatnonzero(floor.mask & (floor.kind == 0)), np.flatnonzero(floor.mask & (floor.kind != 0))
-    window = floor.kind[opening] == KINDS.index("window")
-    ahead = floor.normal[opening] * np.where(window, 0.0, np.where(floor.hinge[opening] >= 0, length[opening], WAY))[:, None]
-    corners = np.stack([start[opening], stop[opening], start[opening] + ahead, stop[opening] + ahead], 1)
-    along = (stop - start)[wall] / np.maximum(length[wall], 1e-9)[:, None]
-    away = corners[None] - start[wall][:, None, None]  # (W, O, 4, 2)
-    s, off = (np.einsum("wokx,wx->wok", away, axis) for axis in (along, floor.normal[wall].astype(float)))
-    taken = (off.min(-1) < DEPTH) & (off.max(-1) > -ON_WALL)
-    free: tuple[list[float], list[float]] = ([], [])
-    for low, stretches in enumerate(free):
-        for k, end in enumerate(length[wall]):
+    free = np.zeros((2, STRETCHES))
+    there, window = floor.mask, floor.kind == KINDS.index("window")
+    _find_stretches(
+        floor.ends.astype(float),
+        floor.normal.astype(float),
+        there & (floor.kind == 0),
+        there & (floor.kind != 0),
+        window,
+        floor.hinge,
+        free,
+    )
+    return free
+
+
+@compiled
+def _find_stretches(ends: Floats, normal: Floats, wall: Bools, opening: Bools, window: Bools, hinge: Ints, free: Floats) -> None:
+    """Fill in the longest free stretches of walls (M,): between what openings take of them, and between what doors do."""
+    taken = np.empty((len(ends), 2))
+    for low in range(2):
+        for w in np.flatnonzero(wall):
+            across, along = ends[w, 1, 0] - ends[w, 0, 0], ends[w, 1, 1] - ends[w, 0, 1]
+            length = np.sqrt(across * across + along * along)
+            ux, uy, count = across / max(length, 1e-9), along / max(length, 1e-9), 0
+            for o in np.flatnonzero(opening):
+                if low and window[o]:
+                    continue
+                wide = np.hypot(ends[o, 1, 0] - ends[o, 0, 0], ends[o, 1, 1] - ends[o, 0, 1])
+                depth = 0.0 if window[o] else wide if hinge[o] >= 0 else WAY
+                first, last, near, far = np.inf, -np.inf, np.inf, -np.inf
+                for end in range(2):
+                    for ahead in (0.0, depth):
+                        x, y = (
+                            ends[o, end, 0] + ahead * normal[o, 0] - ends[w, 0, 0],
+                            ends[o, end, 1] + ahead * normal[o, 1] - ends[w, 0, 1],
+                        )
+                        place, off = x * ux + y * uy, x * normal[w, 0] + y * normal[w, 1]
+                        first, last, near, far = min(first, place), max(last, place), min(near, off), max(far, off)
+                if near < DEPTH and far > -ON_WALL:
+                    k = count
+                    while k and taken[k - 1, 0] > first:
+                        taken[k] = taken[k - 1]
+                        k -= 1
+                    taken[k, 0], taken[k, 1] = first, last
+                    count += 1
             at = 0.0
-            blocks = taken[k] & ~window if low else taken[k]
-            for a, b in sorted(zip(s[k, blocks].min(-1), s[k, blocks].max(-1), strict=True)):
-                stretches.append(min(a, end) - at)
-                at = max(at, b)
-            stretches.append(end - at)
-    return np.stack([np.sort(np.maximum([*stretches, *[0.0] * STRETCHES], 0.0))[: -STRETCHES - 1 : -1] for stretches in free])
+            for k in range(count):
+                _keep_longest(min(taken[k, 0], length) - at, free[low])
+                at = max(at, taken[k, 1])
+            _keep_longest(length - at, free[low])
+
+
+@compiled
+def _keep_longest(length: float, longest: Floats) -> None:
+    """Put a length into a falling list where it belongs."""
+    for k in range(len(longest)):
+        if length > longest[k]:
+            longest[k], length = length, longest[k]
 
 
 class Holdings(NamedTuple):

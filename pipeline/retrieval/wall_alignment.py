@@ -21,22 +21,12 @@ def keep_at_walls(position: Floats, yaw: float, asked: Floats, size: Floats, pol
     same frame. Along each horizontal axis of the object, the side that is within REACH of a wall parallel to it stays;
     with a wall at both sides or none the centre stays. A gap left by the model below REACH is thus kept as it is.
     """
-    moved = np.array(position, float)
-    for extent, axis in enumerate(_axes(yaw)):
-        near = [abs(gap_to_wall(position[:2] + sign * axis * asked[extent] / 2, sign * axis, polygon, BEYOND)) < REACH for sign in (1, -1)]
-        moved[:2] += axis * (asked[extent] - size[extent]) / 2 * (int(near[0]) - int(near[1]))
-    return moved
+    return _keep(np.asarray(position, float), _axes(yaw), np.asarray(asked, float), np.asarray(size, float), np.asarray(polygon, float))
 
 
 def put_before_walls(position: Floats, yaw: float, size: Floats, polygon: Floats) -> Floats:
     """Return the position (3,) [m] of a box moved out of walls that it sticks into by less than REACH, where the room is wide enough for it."""
-    moved = np.array(position, float)
-    for extent, axis in enumerate(_axes(yaw)):
-        past = size[1 - extent] / 2 - OVERLAP
-        ahead, behind = (gap_to_wall(moved[:2] + sign * axis * size[extent] / 2, sign * axis, polygon, past) for sign in (1, -1))
-        if -REACH < min(ahead, behind) < 0.0 <= ahead + behind:
-            moved[:2] += axis * (ahead - CLEAR if ahead < behind else CLEAR - behind)
-    return moved
+    return _pull_out(np.asarray(position, float), _axes(yaw), np.asarray(size, float), np.asarray(polygon, float))
 
 
 def _axes(yaw: float) -> Floats:
@@ -60,6 +50,29 @@ def gap_to_wall(point: Floats, outward: Floats, polygon: Floats, past: float) ->
         if y * outward[0] - x * outward[1] > 0.98 and -past < place < length + past and abs(offset) < abs(nearest):
             nearest = offset
     return nearest
+
+
+@compiled
+def _keep(position: Floats, axes: Floats, asked: Floats, size: Floats, polygon: Floats) -> Floats:
+    moved = position.copy()
+    for extent in range(2):
+        axis = axes[extent]
+        ahead = abs(gap_to_wall(position[:2] + axis * asked[extent] / 2, axis, polygon, BEYOND)) < REACH
+        behind = abs(gap_to_wall(position[:2] - axis * asked[extent] / 2, -axis, polygon, BEYOND)) < REACH
+        moved[:2] += axis * (asked[extent] - size[extent]) / 2 * (int(ahead) - int(behind))
+    return moved
+
+
+@compiled
+def _pull_out(position: Floats, axes: Floats, size: Floats, polygon: Floats) -> Floats:
+    moved = position.copy()
+    for extent in range(2):
+        axis, past = axes[extent], size[1 - extent] / 2 - OVERLAP
+        ahead = gap_to_wall(moved[:2] + axis * size[extent] / 2, axis, polygon, past)
+        behind = gap_to_wall(moved[:2] - axis * size[extent] / 2, -axis, polygon, past)
+        if -REACH < min(ahead, behind) < 0.0 <= ahead + behind:
+            moved[:2] += axis * (ahead - CLEAR if ahead < behind else CLEAR - behind)
+    return moved
 
 
 def part(centres: Floats, yaws: Floats, sizes: Floats, polygon: Floats) -> Floats:
