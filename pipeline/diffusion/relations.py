@@ -60,6 +60,11 @@ class Relations:
     offers: Tensor
     kind: Tensor | None = None
 
+    @property
+    def features(self) -> Tensor:
+        """All that is known (..., F + G), and of walls and openings (..., F + G + KINDS)."""
+        return torch.cat([self.far, self.near, *(() if self.kind is None else (self.kind,))], -1)
+
 
 def wall_relations(boxes: Boxes, rooms: RoomBatch, blur: Tensor) -> Relations:
     """Relate each box to each wall or opening (K = M). `blur` (B, 2) is the noise of a position [m] and of an axis."""

@@ -40,7 +40,7 @@ from pipeline.diffusion.relations import (
 )
 from pipeline.diffusion.schedule import Expect, alpha_sigma, alpha_sigma_of
 from pipeline.diffusion.settings import MOST_SLOTS, ModelSettings
-from pipeline.diffusion.surroundings import Rooms, Surroundings
+from pipeline.diffusion.surroundings import BatchLayout, Surroundings
 
 FLOOR_FEATURES = 5 + len(KINDS)
 WALL_OFFERS, PAIR_OFFERS = WALL_MOVES + WALL_TURNS, PAIR_MOVES + PAIR_TURNS
@@ -78,7 +78,7 @@ class Block(nn.Module):
     def forward(
         self,
         x: Tensor,
-        rooms: Rooms,
+        rooms: BatchLayout,
         others: Surroundings,
         floor: Surroundings,
         keys: Sequence[Tensor],
@@ -99,7 +99,7 @@ class Pass(nn.Module):
     def __init__(self, settings: ModelSettings) -> None:
         super().__init__()
         width, relation, heads, layers = settings.width, settings.relation, settings.heads, settings.layers
-        self.heads, self.layers = heads, layers
+        self.layers = layers
         self.guess = nn.Linear(6, width)
         self.pairs = nn.Sequential(nn.Linear(PAIR_FEATURES + PAIR_NOISE, relation), nn.ReLU(), nn.Linear(relation, relation), nn.ReLU())
         self.walls = nn.Sequential(
@@ -120,15 +120,14 @@ class Pass(nn.Module):
             self.modulation.bias.copy_(ones.repeat_interleave(width))
 
     def forward(
-        self, tokens: Tensor, slots: NoisySlots, guess: Tensor, rooms: Rooms, keys: Sequence[Tensor], condition: Tensor
+        self, tokens: Tensor, slots: NoisySlots, guess: Tensor, rooms: BatchLayout, keys: Sequence[Tensor], condition: Tensor
     ) -> tuple[Tensor, Tensor]:
         """Return the tokens, and the answer (..., 40) as directions and amounts; `guess` (..., 8) metric."""
         boxes, blur = boxes_of(guess), slots.blur
         pair, wall = rooms.pairs(boxes, blur), rooms.walls(boxes, blur)
-        seen = torch.cat([self.pairs(torch.cat([pair.far, pair.near], -1)), pair.near], -1)
+        seen = torch.cat([self.pairs(pair.features), pair.near], -1)
         pairs = Surroundings(seen, rooms.pair_scores(self.pair_bias(seen)), pair.offers)
-        of_walls = [f for f in (wall.far, wall.near, wall.kind) if f is not None]
-        seen = torch.cat([self.walls(torch.cat(of_walls, -1)), wall.near], -1)
+        seen = torch.cat([self.walls(wall.features), wall.near], -1)
         walls = Surroundings(seen, rooms.wall_scores(self.wall_bias(seen)), wall.offers)
         modulation = rooms.to_objects(by_room(self.modulation, condition)).chunk(MODULATIONS * self.layers + 2, -1)
         own_guess = torch.cat([invariants(boxes.centre / 3, boxes.axis), boxes.bottom[..., None], boxes.height[..., None]], -1)
@@ -172,7 +171,7 @@ class SetTransformer(nn.Module):
         self.codec = Codec(self.norm, self.slot.weight.device)
         return self
 
-    def floor_code(self, rooms: RoomBatch, classes: Tensor, layout: Rooms | None = None) -> FloorCode:
+    def floor_code(self, rooms: RoomBatch, classes: Tensor, layout: BatchLayout | None = None) -> FloorCode:
         """Encode the rooms and what they will hold, `classes` (B, N), for a `layout` of their objects, padded by default; independent of the noise level, so a sampler calls it once."""
         ends, middle = rooms.ends, rooms.ends.mean(2)
         length = torch.linalg.vector_norm(ends[:, :, 1] - ends[:, :, 0] + 1e-9, dim=-1)
@@ -209,7 +208,7 @@ class SetTransformer(nn.Module):
         return self.answers(x, classes, level, self._padded(rooms, classes), code or self.floor_code(rooms, classes), before)
 
     def answers(
-        self, x: Tensor, classes: Tensor, level: Tensor, rooms: Rooms, code: FloorCode, before: Tensor | None = None
+        self, x: Tensor, classes: Tensor, level: Tensor, rooms: BatchLayout, code: FloorCode, before: Tensor | None = None
     ) -> tuple[Tensor, ...]:
         """Return what each pass answers (..., 40) of slots x (..., 40) of `classes` (...), however the rooms stand in them."""
         condition = nn.functional.silu(by_room(self.level, level_features(level)) + code.room)
@@ -264,7 +263,7 @@ class SetTransformer(nn.Module):
 
         return expect_padded
 
-    def _expectation(self, classes: Tensor, layout: Rooms, code: FloorCode) -> Expect:
+    def _expectation(self, classes: Tensor, layout: BatchLayout, code: FloorCode) -> Expect:
         ones = torch.ones(len(code.room), device=classes.device)
         before: Tensor | None = None
 

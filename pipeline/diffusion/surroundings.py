@@ -18,7 +18,7 @@ class Surroundings(NamedTuple):
     offers: Tensor
 
 
-class Rooms(Protocol):
+class BatchLayout(Protocol):
     """The rooms of a batch, as the network asks about them. Tokens are (B, N, d) of padded rooms, (T, d) of a list."""
 
     def to_objects(self, by_room: Tensor) -> Tensor:
