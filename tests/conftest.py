@@ -12,6 +12,7 @@ ROOT = Path(__file__).parents[1]
 pin_instructions()  # as stages do: what tests make in their own process are the same bytes
 
 
+@pytest.hookimpl(tryfirst=True)  # before xdist reads the marks
 def pytest_collection_modifyitems(items):
     """Keep the tests of a file, and all of the whole factory, in one process (`--dist loadgroup`): what they share is made once, and nobody waits for it."""
     for item in items:

@@ -158,7 +158,7 @@ def test_several_commands_share_one_dataset_and_each_home_is_made_once(tmp_path)
     """Three commands, one of them with processes of its own, each of which gets work, whoever comes first."""
     (tmp_path / "alone").mkdir()
     assert command(tmp_path / "alone" / "set", 40).wait() == 0
-    runs = [command(tmp_path / "set", 40, workers, crowd=3) for workers in (1, 2, 1)]
+    runs = [command(tmp_path / "set", 40, workers, crowd=3, shard_seconds=300.0) for workers in (1, 2, 1)]
     assert [run.wait(timeout=600) for run in runs] == [0, 0, 0]
     lines = [line.split() for line in (tmp_path / "made.txt").read_text().splitlines()]
     assert sorted(int(index) for index, _ in lines) == list(range(40))
@@ -170,7 +170,10 @@ def test_what_a_killed_command_had_claimed_is_made_by_the_others(tmp_path):
     """On one machine it is seen at once that a process is gone: these commands never give up one that is only silent."""
     (tmp_path / "alone").mkdir()
     assert command(tmp_path / "alone" / "set", 24).wait() == 0
-    killed, other = command(tmp_path / "set", 24, crowd=2, stop="first"), command(tmp_path / "set", 24, crowd=2)
+    killed, other = (
+        command(tmp_path / "set", 24, crowd=2, stop="first", shard_seconds=300.0),
+        command(tmp_path / "set", 24, crowd=2, shard_seconds=300.0),
+    )
     await_homes(tmp_path / "set", other)
     killed.kill()
     killed.wait()
