@@ -79,7 +79,7 @@ class SampleSettings:
 
     evaluations: int = 12  # of the denoiser; 0: the paper's thousand levels, the reference
     eta: float = 1.0  # noise of each step: 1 as in DDPM, 0 none (DDIM)
-    batch: int = 32  # rooms per padded batch
+    batch: int = 32  # rooms that are sampled together
     quantity: bool = True  # draw exactly as many objects as are asked for
     articulation: Articulation = "joints"  # what counts as extended state: joints' sweeps, the paper's heuristic, or no guidance
     articulation_scale: float = 0.5  # step along the descent of phi_articoll [m per m]
