@@ -37,7 +37,7 @@ else
 endif
 
 test: $(DEV) ## all tests
-	OMP_NUM_THREADS=1 python -m pytest -n $(JOBS) --dist loadgroup
+	OMP_NUM_THREADS=1 python -m pytest -n $(JOBS)
 
 # without what they only draw and convert with (OpenCV, embreex, by which trimesh would shoot rays otherwise than the factory's)
 engines: $(DEV) ## SAPIEN and yourdfpy for the tests that want them: 7 s, 140 MB

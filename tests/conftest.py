@@ -12,14 +12,6 @@ ROOT = Path(__file__).parents[1]
 pin_instructions()  # as stages do: what tests make in their own process are the same bytes
 
 
-@pytest.hookimpl(tryfirst=True)  # before xdist reads the marks
-def pytest_collection_modifyitems(items):
-    """Keep the tests of a file, and all of the whole factory, in one process (`--dist loadgroup`): what they share is made once, and nobody waits for it."""
-    for item in items:
-        folder = item.path.parent.name
-        item.add_marker(pytest.mark.xdist_group("end_to_end" if folder == "end_to_end" else str(item.path)))
-
-
 @pytest.fixture(scope="session", autouse=True)
 def _own_cache(tmp_path_factory):
     """What is kept between runs on a machine (assets as USD) stays in the tests' own folder."""
