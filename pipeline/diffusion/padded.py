@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
 from pipeline.diffusion.batch import RoomBatch
-from pipeline.diffusion.relations import Boxes, Relations, axis_deviations, pair_relations, wall_relations
+from pipeline.diffusion.relations import PAIR_MOVES, WALL_MOVES, Boxes, Relations, axis_deviations, pair_relations, wall_relations
 from pipeline.diffusion.surroundings import Surroundings
 
 HIDDEN = -1e9  # score of what is not there
@@ -65,23 +66,11 @@ class PaddedRooms:
         (query,) = split_heads(queries, 1, self.heads)
         return attend(weights(query, key, around.scores[layer]), value, around.seen)
 
-    def take_offers(
-        self,
-        points: Tensor,
-        key: Tensor,
-        pairs: Surroundings,
-        walls: Surroundings,
-        by_wall: Tensor,
-        by_pair: Tensor,
-        moves: tuple[int, int],
-    ) -> Tensor:
-        """Return the sums (B, N, 2, 2) of what walls and objects offer, a move and a turn: the first `moves` of walls' offers and of objects' are moves.
-
-        `points` (B, N, 3 d): queries to walls and to objects, keys of objects; `by_wall`, `by_pair` (B, N, H K) are amounts.
-        """
+    def take_offers(self, points: Tensor, key: Tensor, walls: Surroundings, pairs: Surroundings, amounts: Sequence[Tensor]) -> Tensor:
+        """Return the sums (B, N, 2, 2) of what walls and objects offer (`BatchLayout.take_offers`)."""
         to_walls, to_objects, own = split_heads(points, 3, self.heads)
-        from_walls = sum_directions(weights(to_walls, key, walls.scores[-1]), walls.offers, by_wall, moves[0])
-        return from_walls + sum_directions(weights(to_objects, own, pairs.scores[-1]), pairs.offers, by_pair, moves[1])
+        from_walls = sum_directions(weights(to_walls, key, walls.scores[-1]), walls.offers, amounts[0], WALL_MOVES)
+        return from_walls + sum_directions(weights(to_objects, own, pairs.scores[-1]), pairs.offers, amounts[1], PAIR_MOVES)
 
 
 def split_heads(x: Tensor, parts: int, heads: int) -> tuple[Tensor, ...]:

@@ -7,6 +7,7 @@ In a padded batch most of an evaluation is what is not there, and a thousand cal
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
+from pipeline.arrays import Bools, Ints
 from pipeline.diffusion.batch import RoomBatch
 from pipeline.diffusion.context import KINDS
 from pipeline.diffusion.relations import (
@@ -34,7 +36,6 @@ from pipeline.diffusion.surroundings import Surroundings
 from pipeline.geometry.compiled import reordering
 
 Singles = NDArray[np.float32]
-Index = NDArray[np.int64]
 X, Y, BOTTOM, HALF_W, HALF_D, HEIGHT, COS, SIN = range(8)  # columns of a box [m]
 NIL = np.float32(0)
 
@@ -43,20 +44,20 @@ NIL = np.float32(0)
 class RaggedRooms:
     """B rooms, their T objects in one list, their M walls and openings in another: those of room b from `first[b]` and `bound[b]` on, (B + 1,).
 
-    `room` (T,) of each object. `pairs` and `sides` (B + 1,): where the pairs of a room's objects begin, and of its objects with its walls and openings.
-    Of these `ends` (M, 2, 2) [m], `normal` (M, 2), `kind` (M, KINDS) as 0 and 1, which are a `wall` (M,); `there` (B, tokens) tells them from padding.
+    `room` (T,) of each object. `pairs_from` and `sides_from` (B + 1,): where the pairs of a room's objects begin, and of its objects with its walls and openings.
+    Of these `ends` (M, 2, 2) [m], `normal` (M, 2), which are a `wall` (M,); `there` (B, tokens) tells them from padding. `kind` (Q, KINDS): what the
+    second of each such pair is, as 0 and 1.
     """
 
-    first: Index
-    bound: Index
-    pairs_from: Index
-    sides_from: Index
+    first: Ints
+    bound: Ints
+    pairs_from: Ints
+    sides_from: Ints
     ends: Singles
     normal: Tensor
     kind: Tensor
-    wall: NDArray[np.bool_]
+    wall: Bools
     room: Tensor
-    side: Tensor
     there: Tensor
     heads: int
 
@@ -67,10 +68,10 @@ class RaggedRooms:
         first, bound, pairs, sides_from = (np.concatenate([[0], np.cumsum(n)]) for n in (counts, sides, counts**2, counts * sides))
         kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()
         ends, normal, kind, wall = (v[rooms.mask] for v in (rooms.ends, rooms.normal, kind, rooms.walls))
-        side = np.concatenate([np.tile(np.arange(a, b), n) for a, b, n in zip(bound, bound[1:], counts, strict=False)])
+        second = np.concatenate([np.tile(np.arange(a, b), n) for a, b, n in zip(bound, bound[1:], counts, strict=False)])
         room = torch.from_numpy(np.repeat(np.arange(len(counts)), counts))
         return cls(
-            first, bound, pairs, sides_from, ends.numpy(), normal, kind, wall.numpy(), room, torch.from_numpy(side), rooms.mask, heads
+            first, bound, pairs, sides_from, ends.numpy(), normal, kind[torch.from_numpy(second)], wall.numpy(), room, rooms.mask, heads
         )
 
     def to_objects(self, by_room: Tensor) -> Tensor:
@@ -108,7 +109,7 @@ class RaggedRooms:
         far, near = torch.from_numpy(features).split([WALL_FEATURES, WALL_NOISE], -1)
         far[:, 1:4].tanh_()
         far[:, 6:10].tanh_()
-        return Relations(far, near, torch.from_numpy(offers), self.kind[self.side])
+        return Relations(far, near, torch.from_numpy(offers), self.kind)
 
     def axis_deviations(self, boxes: Boxes, blur: Tensor) -> Tensor:
         """Return how far axes are from those of their rooms (T, 2), in units of the noise."""
@@ -131,32 +132,23 @@ class RaggedRooms:
         """Return what objects see of the floor (T, d + H R); keys and values are two of `split_keys`."""
         return self._attend(queries, key, value, around, layer, self.bound, self.sides_from)
 
-    def _attend(self, query: Tensor, key: Tensor, value: Tensor, around: Surroundings, layer: int, keys: Index, pairs: Index) -> Tensor:
+    def _attend(self, query: Tensor, key: Tensor, value: Tensor, around: Surroundings, layer: int, keys: Ints, pairs: Ints) -> Tensor:
         """Return values, and features of pairs, each under the weights of each head; keys and values of room b from `keys[b]` on."""
         seen, out = around.seen.numpy(), np.zeros((len(query), query.shape[1] + self.heads * around.seen.shape[1]), np.float32)
         own = (query.numpy(), key.numpy(), value.numpy(), seen, around.scores[layer].numpy())
         _look_around(*own, self.first, keys, pairs, np.empty(_longest(keys), np.float32), out)
         return torch.from_numpy(out)
 
-    def take_offers(
-        self,
-        points: Tensor,
-        key: Tensor,
-        pairs: Surroundings,
-        walls: Surroundings,
-        by_wall: Tensor,
-        by_pair: Tensor,
-        moves: tuple[int, int],
-    ) -> Tensor:
+    def take_offers(self, points: Tensor, key: Tensor, walls: Surroundings, pairs: Surroundings, amounts: Sequence[Tensor]) -> Tensor:
         """Return the sums (T, 2, 2) of what walls and objects offer (`padded.PaddedRooms.take_offers`)."""
         to_walls, to_objects, own = (part.contiguous().numpy() for part in points.chunk(3, -1))
         goes = np.zeros((len(points), 4), np.float32)
-        for query, keys, around, amounts, count, start, begin in (
-            (to_walls, key.numpy(), walls, by_wall, moves[0], self.bound, self.sides_from),
-            (to_objects, own, pairs, by_pair, moves[1], self.first, self.pairs_from),
+        for query, keys, around, amount, count, start, begin in (
+            (to_walls, key.numpy(), walls, amounts[0], WALL_MOVES, self.bound, self.sides_from),
+            (to_objects, own, pairs, amounts[1], PAIR_MOVES, self.first, self.pairs_from),
         ):
             offered = np.empty((1, around.offers.shape[1]), np.float32)
-            weights, by = np.empty(_longest(start), np.float32), amounts.contiguous().numpy()
+            weights, by = np.empty(_longest(start), np.float32), amount.contiguous().numpy()
             scores = around.scores[-1].numpy()
             _take_offers(query, keys, scores, around.offers.numpy(), count, self.first, start, begin, by, weights, offered, goes)
         sums: Tensor = torch.from_numpy(goes).unflatten(-1, (2, 2))
@@ -168,7 +160,7 @@ def _columns(boxes: Boxes) -> Singles:
     return columns
 
 
-def _longest(keys: Index) -> int:
+def _longest(keys: Ints) -> int:
     return int(np.diff(keys).max())
 
 
@@ -183,7 +175,7 @@ def _offer(offers: Singles, p: int, k: int, x: float, y: float) -> None:
 
 
 @reordering
-def _relate_objects(boxes: Singles, first: Index, blur: tuple[float, float], features: Singles, offers: Singles) -> None:
+def _relate_objects(boxes: Singles, first: Ints, blur: tuple[float, float], features: Singles, offers: Singles) -> None:
     """Fill in the features of each object of a room with each, none yet squashed, and the directions that they offer."""
     p, near = 0, PAIR_FEATURES
     for b in range(len(first) - 1):
@@ -223,7 +215,7 @@ def _relate_objects(boxes: Singles, first: Index, blur: tuple[float, float], fea
 
 @reordering
 def _relate_walls(
-    boxes: Singles, first: Index, bound: Index, ends: Singles, normal: Singles, blur: tuple[float, float], features: Singles,
+    boxes: Singles, first: Ints, bound: Ints, ends: Singles, normal: Singles, blur: tuple[float, float], features: Singles,
     offers: Singles,
 ) -> None:  # fmt: skip
     """Fill in the features of each object with each wall and opening of its room, none yet squashed, and the directions that they offer."""
@@ -260,7 +252,7 @@ def _relate_walls(
 
 
 @reordering
-def _find_nearest_walls(boxes: Singles, normal: Singles, wall: NDArray[np.bool_], first: Index, bound: Index, nearest: Index) -> None:
+def _find_nearest_walls(boxes: Singles, normal: Singles, wall: Bools, first: Ints, bound: Ints, nearest: Ints) -> None:
     """Fill in the wall (T,) whose normal is nearest to each object's axis."""
     for b in range(len(first) - 1):
         for n in range(first[b], first[b + 1]):
@@ -279,9 +271,9 @@ def _look_around(
     value: Singles,
     seen: Singles,
     score: Singles,
-    first: Index,
-    keys: Index,
-    begin: Index,
+    first: Ints,
+    keys: Ints,
+    begin: Ints,
     weights: Singles,
     out: Singles,
 ) -> None:
@@ -299,7 +291,7 @@ def _look_around(
 
 @reordering
 def _take_offers(
-    query: Singles, key: Singles, score: Singles, offers: Singles, moves: int, first: Index, keys: Index, begin: Index, amounts: Singles,
+    query: Singles, key: Singles, score: Singles, offers: Singles, moves: int, first: Ints, keys: Ints, begin: Ints, amounts: Singles,
     weights: Singles, offered: Singles, goes: Singles,
 ) -> None:  # fmt: skip
     """Add to `goes` (T, 4), a move and a turn, the directions that pairs offer: under the weights of each head, by `amounts` (T, H K)."""

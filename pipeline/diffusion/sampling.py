@@ -44,7 +44,7 @@ class Sampler:
     """A trained layout model, ready to furnish rooms.
 
     The answer for a room depends on nothing but the weights, the settings, the seed, its key and its context: noise is
-    keyed, a batch holds rooms of one shape, and matrix products give a row the same bits whatever the other rows, from FEW rows on.
+    keyed and drawn for what is there, and on a CPU a room's answer has the same bits whichever others share its batch.
     """
 
     net: Denoiser
@@ -145,7 +145,6 @@ class Sampler:
         )
 
         rngs = [seeds.generator(self.seed, "diffusion", *key) for key in keys]
-
         counts = (classes < len(names)).sum(1).tolist()
 
         def noise() -> Tensor:

@@ -136,10 +136,10 @@ class Pass(nn.Module):
             own = modulation[MODULATIONS * i : MODULATIONS * (i + 1)]
             tokens = block(tokens, rooms, pairs, walls, keys[2 * i : 2 * i + 2], own, i)
         features = modulate(tokens, *modulation[-2:])
-        plain, ways, by_wall, by_pair = self.head(features).split(self.parts, -1)
+        plain, ways, *amounts = self.head(features).split(self.parts, -1)
         mine = torch.stack([*slots.ways, boxes.axis, rooms.axis_deviations(boxes, blur)], -2)
         goes = ways.unflatten(-1, (2, OWN_WAYS)) @ mine  # (..., 2, 2): move, turn
-        goes = goes + rooms.take_offers(self.point(features), keys[-1], pairs, walls, by_wall, by_pair, (WALL_MOVES, PAIR_MOVES))
+        goes = goes + rooms.take_offers(self.point(features), keys[-1], walls, pairs, amounts)
         return tokens, torch.cat([goes[..., 0, :], plain[..., :4], goes[..., 1, :], plain[..., 4:]], -1)
 
 

@@ -57,18 +57,9 @@ class BatchLayout(Protocol):
         """Return what objects see of the floor (..., d + H R); keys and values are two of `split_keys`."""
         ...
 
-    def take_offers(
-        self,
-        points: Tensor,
-        key: Tensor,
-        pairs: Surroundings,
-        walls: Surroundings,
-        by_wall: Tensor,
-        by_pair: Tensor,
-        moves: tuple[int, int],
-    ) -> Tensor:
-        """Return the sums (..., 2, 2) of what walls and objects offer, a move and a turn: the first `moves` of walls' offers and of objects' are moves.
+    def take_offers(self, points: Tensor, key: Tensor, walls: Surroundings, pairs: Surroundings, amounts: Sequence[Tensor]) -> Tensor:
+        """Return the sums (..., 2, 2) of what walls and objects offer, a move and a turn.
 
-        `points` (..., 3 d): queries to walls and to objects, keys of objects; `by_wall`, `by_pair` (..., H K) are amounts.
+        `points` (..., 3 d): queries to walls and to objects, keys of objects; `amounts` of the walls' offers and of the objects', (..., H K) each.
         """
         ...
