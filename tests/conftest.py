@@ -11,6 +11,15 @@ from pipeline.execution import pin_instructions
 ROOT = Path(__file__).parents[1]
 pin_instructions()  # as stages do: what tests make in their own process are the same bytes
 
+# These make much once for all their tests. pytest-xdist deals the first of all tests to one process in one piece.
+TOGETHER = ("tests/end_to_end", "tests/homes/test_production.py", "tests/sources/test_masses.py", "tests/experiments/test_realism.py")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Put the tests that share a costly fixture first, so that no two processes make it."""
+    items.sort(key=lambda item: not item.nodeid.startswith(TOGETHER))
+
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_cache(tmp_path_factory):

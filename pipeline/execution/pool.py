@@ -27,9 +27,6 @@ READY, NOTE, DONE, FAILED = "ready", "note", "done", "failed"
 START = 120.0  # seconds that a worker may take to import what it needs
 GOODBYE = 5.0  # seconds in which a worker that is told to stop may tidy up
 
-# Spawned, not forked: a copy of a process with threads of torch and Arrow in it may hang.
-PROCESSES = multiprocessing.get_context("spawn")
-
 
 @dataclass
 class _Worker:
@@ -67,16 +64,16 @@ def run_on_processes(
     note: Callable[[Note], object] | None,
     silence: float,
     *,
-    start: Any = PROCESSES,
+    preload: str = "",
 ) -> Iterator[tuple[J, R | Lost]]:
     """Run the queue's jobs on `workers` processes; each gets its next job before the result of its last is handed on.
 
-    `start` is the context of multiprocessing by which they start.
+    `preload` is the module with all that a worker needs; left out, it is the one that the step is written in.
     """
     crew: list[_Worker] = []
     stillborn = 0  # workers in a row that died before they could begin
     with tempfile.TemporaryDirectory(prefix="sfgen-") as scratch:  # what a killed worker leaves behind goes with it
-        recruit = functools.partial(_start, start, step, scratch)
+        recruit = functools.partial(_start, _context(preload or _module(step)), step, scratch)
         try:
             while _employ(crew, queue, recruit, workers):
                 for worker in _await_workers(crew, silence):
@@ -127,6 +124,24 @@ def _employ(crew: list[_Worker], queue: Queue[J], recruit: Callable[[], _Worker]
             worker.stop(patience=0.0)
             queue.put_back(task)
     return any(worker.task for worker in crew)
+
+
+def _context(preload: str) -> Any:
+    """Return how workers start: from a server that has imported `preload` once, anew where there is none (Windows).
+
+    Never as copies of this process: one with threads of torch and Arrow in it may hang.
+    """
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([preload])
+    return context
+
+
+def _module(step: Callable[..., object]) -> str:
+    while isinstance(step, functools.partial):
+        step = step.func
+    return step.__module__
 
 
 def _start(context: Any, step: Callable[[J], R], scratch: str) -> _Worker:

@@ -4,7 +4,6 @@ Each task has a budget. What a file costs that exceeds it is that file: its proc
 """
 
 import functools
-import multiprocessing
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -79,18 +78,9 @@ def each(batch: Batch[T, R, M], workers: int, budget: Budget) -> Iterator[M]:
     jobs = Queue(enumerate(batch.items), None)
     count = max(1, min(workers, len(batch.items)))
     following = 0
-    for (number, item), outcome in run_on_processes(step, jobs, count, None, SILENCE, start=_context()):
+    for (number, item), outcome in run_on_processes(step, jobs, count, None, SILENCE, preload="pipeline.sources.registry"):
         died = isinstance(outcome, Lost) and _Refusal("reader_died", f"{outcome.times} times, out of memory perhaps")
         early[number] = batch.result(item, died or outcome)
         while following in early:
             yield early.pop(following)
             following += 1
-
-
-def _context() -> Any:
-    """Return how processes start: from a server that has imported all this once, anew where there is none (Windows)."""
-    if "forkserver" not in multiprocessing.get_all_start_methods():
-        return multiprocessing.get_context("spawn")
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["pipeline.sources.registry"])
-    return context

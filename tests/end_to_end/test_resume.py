@@ -12,13 +12,13 @@ import pytest
 
 from sfgen.check import check
 
-HOMES = 24  # in shards of 4
-SHARDS = 6
+HOMES = 12  # in shards of 4
+SHARDS = 3
 RUN = """
 import sys
 from pathlib import Path
 from stages import shard
-shard.main(Path(sys.argv[1]), count=24, out=Path(sys.argv[2]), seed=5, workers=1, prompts=Path(sys.argv[1]) / "tiny.txt")
+shard.main(Path(sys.argv[1]), count=12, out=Path(sys.argv[2]), seed=5, workers=1, prompts=Path(sys.argv[1]) / "tiny.txt")
 """
 # One furnished room a home, and half an hour less of looking for places.
 TINY = "A studio of 25 m2 with two pieces of furniture and a bathroom.\nA studio of 30 m2 and a bathroom.\n"

@@ -40,18 +40,25 @@ def filled(folder, workers=1, scheduler=None, **asked):
         )
 
 
-def test_one_and_two_workers_and_a_resumed_run_give_the_same_bytes(tmp_path):
-    filled(tmp_path / "one")
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    """The files of the ten homes, made by one process that nobody disturbs."""
+    folder = tmp_path_factory.mktemp("undisturbed") / "set"
+    filled(folder)
+    return papers.made.snapshot(folder)
+
+
+def test_one_and_two_workers_and_a_resumed_run_give_the_same_bytes(tmp_path, undisturbed):
     tally = filled(tmp_path / "two", workers=2)
     assert (tally.homes, tally.resumed, tally.empty) == (10, 0, {})
-    assert papers.made.snapshot(tmp_path / "one") == papers.made.snapshot(tmp_path / "two")
+    assert papers.made.snapshot(tmp_path / "two") == undisturbed
     shutil.rmtree(tmp_path / "two" / "usd")
     again = filled(tmp_path / "two", workers=2)
     assert (again.homes, again.resumed) == (10, 0)
-    assert papers.made.snapshot(tmp_path / "one") == papers.made.snapshot(tmp_path / "two")
+    assert papers.made.snapshot(tmp_path / "two") == undisturbed
 
 
-def test_a_cluster_gives_the_same_bytes_and_loses_the_same_home(tmp_path):
+def test_a_cluster_gives_the_same_bytes_and_loses_the_same_home(tmp_path, undisturbed):
     import dask
     from distributed import LocalCluster
 
@@ -60,20 +67,18 @@ def test_a_cluster_gives_the_same_bytes_and_loses_the_same_home(tmp_path):
         patience,
         LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs="CRITICAL") as cluster,
     ):
-        filled(tmp_path / "here")
         filled(tmp_path / "cluster", scheduler=cluster.scheduler_address)
-        assert papers.made.snapshot(tmp_path / "here") == papers.made.snapshot(tmp_path / "cluster")
+        assert papers.made.snapshot(tmp_path / "cluster") == undisturbed
         tally = filled(tmp_path / "lost", scheduler=cluster.scheduler_address, die=6)
     assert (tally.homes, list(tally.empty)) == (9, ["worker_lost"])
 
 
-def test_workers_that_are_killed_now_and_then_change_nothing(tmp_path):
-    filled(tmp_path / "whole")
+def test_workers_that_are_killed_now_and_then_change_nothing(tmp_path, undisturbed):
     tally = filled(tmp_path / "killed", workers=2, die_once=(1, 6))
     assert (tally.homes, tally.empty) == (10, {})
     assert (tmp_path / "died-1").exists()
     assert (tmp_path / "died-6").exists()
-    assert papers.made.snapshot(tmp_path / "whole") == papers.made.snapshot(tmp_path / "killed")
+    assert papers.made.snapshot(tmp_path / "killed") == undisturbed
 
 
 @pytest.mark.parametrize(("culprit", "word"), [("die", "3 workers died at it"), ("hang", "3 workers kept silent")])
@@ -129,8 +134,7 @@ def await_homes(folder, run):
         time.sleep(0.01)
 
 
-def test_a_run_that_is_killed_keeps_the_chunks_that_were_done(tmp_path):
-    filled(tmp_path / "whole")
+def test_a_run_that_is_killed_keeps_the_chunks_that_were_done(tmp_path, undisturbed):
     run = command(tmp_path / "cut", 10, workers=2, stop=9)
     await_homes(tmp_path / "cut", run)
     run.kill()
@@ -138,7 +142,7 @@ def test_a_run_that_is_killed_keeps_the_chunks_that_were_done(tmp_path):
     tally = filled(tmp_path / "cut", workers=1)
     assert tally.resumed >= 1
     assert tally.homes == 10 - tally.resumed
-    assert papers.made.snapshot(tmp_path / "cut") == papers.made.snapshot(tmp_path / "whole")
+    assert papers.made.snapshot(tmp_path / "cut") == undisturbed
 
 
 def test_a_worker_with_other_weights_loads_them_again_or_refuses(tmp_path):
