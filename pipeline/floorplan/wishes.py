@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Iterator, Mapping
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.furnishing import Mention, room_mentions
+from pipeline.floorplan.language.builder import Mention, room_mentions
 from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
 from pipeline.floorplan.language.parser import attach, check_length, read_furniture, understand_rooms
 from pipeline.floorplan.language.spelling import detect

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from pipeline.errors import RefusedError
@@ -295,3 +296,23 @@ def _style(draft: Draft, state: Reading) -> None:
         knobs.setdefault("min_width", 2)
     if knobs:
         draft.fields["style"] = Style.model_validate(knobs).model_dump()
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """Words of the prompt that name rooms."""
+
+    start: int
+    end: int
+    ids: tuple[str, ...]
+
+
+def room_mentions(program: FloorProgram) -> list[Mention]:
+    """Return where the prompt names rooms, in its order."""
+    by_span: dict[tuple[int, int], list[str]] = {}
+    ids = {r.id for r in program.rooms}
+    for e in program.evidence:
+        room = e.field.removeprefix("rooms.")
+        if e.field.startswith("rooms.") and room in ids:
+            by_span.setdefault((e.start, e.end), []).append(room)
+    return [Mention(start, end, tuple(dict.fromkeys(rooms))) for (start, end), rooms in sorted(by_span.items())]

@@ -17,11 +17,11 @@ from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, has_minus, split_words, words
 from pipeline.floorplan.language.tokens import read_words, segment
-from pipeline.floorplan.program.floor_program import FloorProgram
 from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
 
 STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
+COMMA = frozenset(",，")  # within a sentence
 MOST, MOST_WORDS = 1e6, 6  # of any amount, and of a numeral
 NEAR, FAR, WIDE, OWNED = 5, 7, 16, 14  # words in which "everywhere", a share, "free" and an owner are looked for
 MOST_SEATS = 16
@@ -177,12 +177,21 @@ class Scan:
         at = max((j for j in range(max(stop + 1, k - OWNED), k) if owner(j)), default=None)
         if at is not None and (name not in lexicon()["apart"] or self._past(at + 1) >= k):
             between = self.prompt[self.words[at].end : self.words[k].start]  # "a bedroom, a bathroom and a wardrobe" are three
-            led = self.length(at + 1, "none") or any(self.length(j, "with") for j in range(at + 1, k))
+            led = (
+                self.length(at + 1, "none")
+                or any(self.length(j, "with") for j in range(at + 1, k))
+                or (self.fronted(at) and not self.fronted(k))
+            )
             if led or between.rfind("(") > between.rfind(")") or (":" in between.partition(",")[0] and not any(map(str.isdigit, between))):
                 return True
         listed = name in lexicon()["listed"] and self._listed(k, size)
         at = self._past(k + size)  # "a desk and a wardrobe in the hall"
         return listed or (bool(self.length(at, "in")) and any(owner(at + d) for d in (1, 2, 3)))
+
+    def fronted(self, k: int) -> bool:  # "in the office a wardrobe"
+        """Whether the room at word k stands first in its clause, as a place."""
+        k -= self.length(k - 1, "article")
+        return any(self.length(k - n, "in") == n and self.text(k - n - 1) in {"", *COMMAS} for n in (1, 2, 3))
 
     def _past(self, k: int) -> int:
         """Return where the things, and what joins them, end that begin at word k."""
@@ -251,10 +260,8 @@ class Scan:
         k = 0
         while k < len(self.words):
             self.negated = self.negated and self.text(k) not in STOPS
-            if self.there[k] or self.words[k].start in self.numbers:
-                k += self.length(k, "small") or self._share(k) or self._things(k) or self._look(k) or 1
-            else:
-                k += 1
+            says = bool(self.there[k]) or self.words[k].start in self.numbers
+            k += (says and (self.length(k, "small") or self._share(k) or self._things(k) or self._elsewhere(k) or self._look(k))) or 1
         return self.claims
 
     def _put(self, kind: Kind, first: int, last: int, name: str = "", least: int = 0, most: int | None = None, value: float = 0.0) -> int:
@@ -269,8 +276,8 @@ class Scan:
         home = any(self.length(j, "home") and self.words[j].start not in self.rooms for j in range(left + 1, right))  # "cada habitación"
         inside = range(first, last) if kind == "walkable" else ()
         home = home or any(self.length(j, "dwelling") and self.words[j].start in self.rooms for j in inside)
-        start, end = self.words[first].start, self.words[last - 1].end
-        self.claims.append(Claim(kind, start, end, name, least, most, value, home, self.length(last, "in") > self.length(last, "none")))
+        span, inward = (self.words[first].start, self.words[last - 1].end), self.length(last, "in") > self.length(last, "none")
+        self.claims.append(Claim(kind, *span, name, least, most, value, home, inward))
         return last - first
 
     def _share(self, k: int) -> int:
@@ -341,6 +348,16 @@ class Scan:
         self.claims[place] = replace(claim, plural=read is None and least > 1, inward=claim.inward and not seats)
         return size + seats
 
+    def _elsewhere(self, k: int) -> int:
+        """Read where the last thing shall not stand: "the washing machine goes in the kitchen, not in the bathroom"."""
+        none, last = self.length(k, "none"), self.claims[-1] if self.claims else None
+        place = self.length(k + none, "in") if none and last is not None and last.inward and self.text(k - 1) in COMMAS - STOPS else 0
+        if last is None or not place:
+            return 0
+        self._put("count", k, k + none, last.name, 0, 0)
+        self.claims[-1] = replace(self.claims[-1], end=self.words[k + none + place - 1].end)
+        return none + place
+
     def _seats(self, k: int) -> int:
         """Read for how many a table is, as chairs: "for six people"."""
         lead = self.length(k, "in")
@@ -376,23 +393,3 @@ class Scan:
         """Note the style that stands between an amount and a thing."""
         if length:
             self._put("style", k, k + length, self.phrase(k, "look")[1])
-
-
-@dataclass(frozen=True, slots=True)
-class Mention:
-    """Words of the prompt that name rooms."""
-
-    start: int
-    end: int
-    ids: tuple[str, ...]
-
-
-def room_mentions(program: FloorProgram) -> list[Mention]:
-    """Return where the prompt names rooms, in its order."""
-    by_span: dict[tuple[int, int], list[str]] = {}
-    ids = {r.id for r in program.rooms}
-    for e in program.evidence:
-        room = e.field.removeprefix("rooms.")
-        if e.field.startswith("rooms.") and room in ids:
-            by_span.setdefault((e.start, e.end), []).append(room)
-    return [Mention(start, end, tuple(dict.fromkeys(rooms))) for (start, end), rooms in sorted(by_span.items())]

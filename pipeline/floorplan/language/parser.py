@@ -10,11 +10,11 @@ from typing import Any, NoReturn
 from pydantic import ValidationError
 
 from pipeline.errors import RefusedError, UsageError
-from pipeline.floorplan.language.builder import assemble
+from pipeline.floorplan.language.builder import Mention, assemble, room_mentions
 from pipeline.floorplan.language.frames import apply_frames, join_brackets
-from pipeline.floorplan.language.furnishing import COMMAS, STOPS, Claim, Mention, Scan, room_mentions
+from pipeline.floorplan.language.furnishing import COMMA, COMMAS, STOPS, Claim, Scan
 from pipeline.floorplan.language.lexicon import kinds
-from pipeline.floorplan.language.phrases import ban, refuse, sentences, settle
+from pipeline.floorplan.language.phrases import ban, refuse, sentences, settle, take_back
 from pipeline.floorplan.language.rooms import Reading, introduce
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
@@ -77,6 +77,7 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
     state = Reading(words, people=next(iter(people), None), looks=[e for e in everything if e.kind == "look"])
     for sentence in parsed:
         ban(sentence)
+    take_back(parsed)
     settle(parsed)
     introduce(state, parsed)
     for sentence in parsed:
@@ -152,7 +153,8 @@ def _says(state: Reading, tokens: Sequence[Token], k: int) -> bool:
     if token.kind == "cue":
         return token.value not in {"has", "in"} and token.text not in state.words.lexicon.sign("quiet")
     dweller = token.kind == "owner" and any(m.text in state.words.lexicon.sign("towards") for m in tokens[max(0, k - 2) : k])
-    if dweller or (token.kind, token.value) in {("pron", "it"), ("pron", "one")}:
+    corrects = token.kind == "neg" and next((m.kind for m in tokens[k + 1 :] if m.kind != "comma"), "") == "fix"  # "no, make that three"
+    if dweller or corrects or (token.kind, token.value) in {("pron", "it"), ("pron", "one")}:
         return False  # "for my granny: ..." says who lives there
     sized = k and token.kind == "size" and tokens[k - 1].kind == "amount"
     if sized or (token.kind, token.value) in {("adj", "closed"), ("adj", "plain")}:
@@ -296,10 +298,6 @@ def _clash(message: str, claims: Sequence[Claim], claim: Claim, prompt: str) -> 
     raise ImpossibleError(message, "keep one of the two", words)
 
 
-def _has_comma(text: str) -> bool:
-    return "," in text or "，" in text
-
-
 class _Place:
     """Tells which rooms a claim means."""
 
@@ -323,7 +321,7 @@ class _Place:
         before = [m for m in self.named if begin <= m.start and m.end <= claim.start]
         after = [m for m in self.named if claim.end <= m.start and m.end <= end]
         gap = self.prompt[claim.end : after[0].start] if after else " " * FARTHEST
-        inward = claim.inward and len(gap) < FARTHEST and not _has_comma(gap)
+        inward = claim.inward and len(gap) < FARTHEST and COMMA.isdisjoint(gap)
         if inside := [m for m in self.named if claim.start <= m.start and m.end <= claim.end]:
             return inside[0].ids  # "at least half of the living room must stay free"
         if claim.home or (claim.kind == "style" and not after and not before):
@@ -339,7 +337,7 @@ class _Place:
             near = after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
             return near if claim.kind != "count" else likely[0] if likely and claim.least else ()
         lead = self.prompt[before[-1].end : min(c.start for c in self.claims if c.start >= before[-1].end)]
-        if len(before) > 1 and _has_comma(lead) and {*before[-2].ids, *before[-1].ids} in self.compared:
+        if len(before) > 1 and not COMMA.isdisjoint(lead) and {*before[-2].ids, *before[-1].ids} in self.compared:
             before = before[:-1]  # "a study smaller than the bedroom, with a desk"
         room, usual = before[-1], self._natural(claim, before[-1])
         if self._dwelling(room) and not (claim.plural and usual):
@@ -349,10 +347,13 @@ class _Place:
         host = self.host if follows and (not usual or any(self.kinds[i] in natural(claim.name) for i in self.host)) else ()
         lead = self.prompt[room.end : claim.start] if barred else lead
         studio = [(i,) for i, kind in self.kinds.items() if kind == "studio_room" and natural(claim.name) != ("kitchen",)]
-        if host or ((likely or studio) and not usual and _has_comma(lead)):
+        if host or ((likely or studio) and not usual and not COMMA.isdisjoint(lead)):
             self.host, self.until = host or (likely or studio)[0], claim.end
             return self.host  # "a studio with a bathroom, put a bed and a desk in it"
-        if usual or (joined and self._led(room, claim)):
+        placed = COMMA.isdisjoint(lead) and any(
+            self.scan.fronted(self._at(m.start)) for m in before if m.ids == room.ids
+        )  # "in the office put ..."
+        if usual or placed or (joined and self._led(room, claim)):
             return room.ids
         mine = not joined and not barred
         return likely[0] if likely else room.ids if mine else ()  # "two bedrooms, a kitchen and a sofa": the home's
@@ -379,7 +380,7 @@ class _Place:
         between = range(self._at(room.end), self._at(claim.start))
         inside = {k for c in self.claims for k in range(self._at(c.start), self._at(c.end))}  # "no bath": it leads to no other wish
         marked = any(self.scan.length(k, "with", "in", "is") or self.scan.text(k) in {":", "("} for k in between if k not in inside)
-        return marked or "characters" in self.scan.traits
+        return marked or "characters" in self.scan.traits or self.scan.fronted(self._at(room.start))
 
     def _joined(self, start: int, end: int) -> bool:
         """Whether between two places stands nothing but other wishes and what joins them."""

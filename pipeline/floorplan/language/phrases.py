@@ -135,7 +135,7 @@ def _plain(token: Token, lex: Lexicon) -> Token:
     kind = "and" if token.kind == "slash" else token.kind
     if token.kind == "join":
         kind = "comma" if token.text in lex.sign("also") else token.value
-    removes = token.kind == "neg" and token.text in lex.sign("removes")
+    removes = token.kind == "neg" and (token.value == "back" or token.text in lex.sign("removes"))
     return replace(token, kind=kind, removes=removes)
 
 
@@ -165,7 +165,7 @@ def _phrase(token: Token, pre: Sequence[Token], compound: bool, lex: Lexicon) ->
     phrase = replace(token, kind="np", type=kind, role=role if role in ROLES else "", number=0.0, compound=compound, **own)
     for part in pre:
         if part.kind == "num":
-            phrase.banned = phrase.banned or part.number == 0
+            phrase.banned = phrase.removes = phrase.banned or part.number == 0
             phrase.number = part.number if part.number == int(part.number) and part.number > 0 else phrase.number
         elif part.kind == "det" and part.value == "partitive" and phrase.number:
             phrase.part, phrase.number = int(phrase.number), 0.0
@@ -265,8 +265,17 @@ def ban(sentence: list[Token]) -> None:
         behind = next((x for x in sentence[j + 1 :] if x.kind != "verb"), None) if j is not None else None
         relation = behind is not None and behind.kind == "cue" and behind.value in RELATIONS  # which is what is negated
         if j is not None and not relation and (not sentence[j].definite or e.removes):
-            e.kind = "used"
+            e.kind, sentence[j].removes = "used", e.removes
             _list(sentence, j)
+
+
+def take_back(sentences: Sequence[list[Token]]) -> None:
+    """Rule out where it was asked for what is taken back later: "with a gym. ... Scratch the gym"."""
+    phrases = [e for sentence in sentences for e in sentence if e.kind == "np"]
+    for k, last in enumerate(phrases):
+        if last.banned and last.removes and last.definite:
+            for e in phrases[:k]:
+                e.banned = e.banned or (e.type, e.role) == (last.type, last.role)
 
 
 def _target(sentence: list[Token], k: int) -> int | None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pipeline import taxonomy
 from pipeline.errors import RefusedError
 from pipeline.floorplan import complete, parse
-from pipeline.floorplan.language.furnishing import Mention
+from pipeline.floorplan.language.builder import Mention
 from pipeline.floorplan.language.lexicon import LANGUAGES
 from pipeline.floorplan.language.parser import attach, read_furniture
 from pipeline.floorplan.program.floor_program import FloorProgram, Furniture, RoomReq, Things
