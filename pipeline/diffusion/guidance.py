@@ -24,6 +24,7 @@ from pipeline.diffusion.codec import POSITION, SHAPE, SIZE, YAW, Codec
 from pipeline.diffusion.context import Library
 from pipeline.diffusion.schedule import lambda_of
 from pipeline.diffusion.settings import SampleSettings
+from pipeline.geometry.beside import sideways
 
 BOX = slice(0, YAW.stop)  # channels of the geometry: position, size, cos and sin of yaw
 PRESSED = 0.01  # [m] of overlap from which on a smaller asset is asked for, and a room is drawn again
@@ -74,7 +75,7 @@ class Guidance:
         expected, classes = self._metric(codec, x0)
         boxes, shapes = expected[..., BOX], expected[..., SHAPE]
         size, sweeps = self.find_assets(boxes, shapes)
-        moved = resized(boxes, size) if snaps else boxes
+        moved = resized(boxes, size, self.classes < len(self.names)) if snaps else boxes
         if guides:
             sweeps = self._counted(moved, sweeps)
             moved = self.push_apart(moved, sweeps)
@@ -129,7 +130,9 @@ class Guidance:
         if chosen is not None and others is not None:
             chosen = np.where(smaller[..., None, None, None], others, chosen)
         moved = boxes.copy()
-        moved[rooms] = few.push_apart(np.where(smaller[..., None], resized(boxes[rooms], size), boxes[rooms]), chosen)
+        moved[rooms] = few.push_apart(
+            np.where(smaller[..., None], resized(boxes[rooms], size, few.classes < len(self.names)), boxes[rooms]), chosen
+        )
         return moved
 
     def _of_rooms(self, rows: Ints) -> Guidance:
@@ -157,11 +160,14 @@ def heuristic_sweeps(size: Floats, opens: Bools) -> Floats:
     return np.where(opens[..., None, None], np.stack([low, high], -2), np.nan)[:, :, None]
 
 
-def resized(boxes: Floats, size: Floats) -> Floats:
-    """Return boxes (B, N, 8) of the given sizes (B, N, 3) [m], their backs where they were."""
+def resized(boxes: Floats, size: Floats, there: Bools) -> Floats:
+    """Return boxes (B, N, 8) of the given sizes (B, N, 3) [m], their backs where they were, and as far from what they flank; slots that are `there` (B, N) count."""
     length = np.maximum(np.hypot(boxes[..., 6], boxes[..., 7]), SHORT)
     grown = (size[..., 1] - boxes[..., 4]) / 2 / length
-    changed = boxes.copy()
+    changed, yaws = boxes.copy(), np.arctan2(boxes[..., 7], boxes[..., 6])
+    places, before = np.ascontiguousarray(boxes[..., POSITION]), np.where(there[..., None], boxes[..., SIZE], 0.0)
+    for room, out in enumerate(changed):
+        out[:, :2] += sideways(places[room], yaws[room], before[room], size[room])
     changed[..., 0] += boxes[..., 7] * grown
     changed[..., 1] -= boxes[..., 6] * grown
     changed[..., SIZE] = size

@@ -12,16 +12,18 @@ from pipeline import seeds, taxonomy
 from pipeline.diffusion.context import CategoryBounds, Proposal, RoomContext
 from pipeline.entities.home import Placement
 from pipeline.execution import give_memory_back
+from pipeline.geometry.beside import sideways
 from pipeline.homes.parts import split_room
 from pipeline.homes.request import RoomJob
 from pipeline.homes.resources import Resources
 from pipeline.retrieval.index import AssetIndex, Match, Taste
 from pipeline.retrieval.taste import draw_finishes, draw_style, tasteful
-from pipeline.retrieval.wall_alignment import keep_at_walls, part, put_before_walls
+from pipeline.retrieval.wall_alignment import keep_at_walls, part, put_before_walls, straightened
 from pipeline.taxonomy import Taxonomy
 
 PART = 1000  # between the numbers of a room's parts: more than homes have rooms
 SEATS = ("chair", "stool")  # super-categories
+HELD = 1e-9  # [m] by which a wall has moved what it holds
 FREE_CHOICE = 2  # tries of a room in which any category of an essential group will do
 
 
@@ -145,14 +147,21 @@ def retrieve(
     taste = context.taste or Taste()
     if not proposals:
         return Draft(job, (), taste=taste)
+    yaws = straightened(np.array([p.yaw for p in proposals]), context.polygon)
+    proposals = [replace(p, yaw=float(yaw)) for p, yaw in zip(proposals, yaws, strict=True)]
     matches = _matches(job, index, taste, proposals)
     placements: list[Placement] = []
     lost: list[str] = []
+    places, yaws, before = (np.array([getattr(p, name) for p in proposals], float) for name in ("position", "yaw", "size"))
+    after = np.array([p.size if m is None else m.size for p, m in zip(proposals, matches, strict=True)], float)
+    aside = sideways(places, yaws, before, after)
     for number, (proposal, match) in enumerate(zip(proposals, matches, strict=True)):
         if match is None:
             lost.append(proposal.category)
             continue
         position = keep_at_walls(proposal.position, proposal.yaw, proposal.size, match.size, context.polygon)
+        if abs(np.dot(position[:2] - proposal.position[:2], (math.cos(proposal.yaw), math.sin(proposal.yaw)))) < HELD:
+            position[:2] += aside[number]  # no wall holds it on either side
         position[2] = _height(words.categories[proposal.category].mount, proposal, float(match.size[2]), context)
         placement = Placement(
             f"{job.room_id}_{proposal.category}_{number}",

@@ -11,6 +11,7 @@ OVERLAP = 0.05  # a wall that is beside no more than this of a side does not bea
 CLEAR = 0.002  # of what is put before a wall [m]
 SHALLOW = 0.15  # what reaches deeper into another is meant to, or a matter for the arranger [m]
 SQUARE = 0.05  # boxes turned to each other by less than this, or by so much more than quarters, are square [rad]
+ASKEW = np.radians(2.5)  # a turn to the walls that no training room has: of what is turned by less, the sampler meant none
 ROUNDS = 8  # over all pairs: who is moved may meet the next
 
 
@@ -75,6 +76,15 @@ def _pull_out(position: Floats, axes: Floats, size: Floats, polygon: Floats) -> 
     return moved
 
 
+def straightened(yaws: Floats, polygon: Floats) -> Floats:
+    """Return yaws (n,), those along or across a wall of `polygon` (k, 2) that differ from its direction by less than ASKEW."""
+    along = np.roll(polygon, -1, axis=0) - polygon
+    off = np.asarray(yaws)[:, None] - np.arctan2(along[:, 1], along[:, 0])
+    off = np.mod(off + np.pi / 4, np.pi / 2) - np.pi / 4
+    least = off[np.arange(len(off)), np.abs(off).argmin(1)]
+    return np.asarray(yaws - np.where(np.abs(least) < ASKEW, least, 0.0))
+
+
 def part(centres: Floats, yaws: Floats, sizes: Floats, polygon: Floats) -> Floats:
     """Return the centres (n, 3) [m] of boxes, those that reach into each other by less than SHALLOW moved apart, each by half or as far as its wall allows.
 
@@ -104,7 +114,7 @@ def _part(centres: Floats, yaws: Floats, sizes: Floats, polygon: Floats) -> Floa
                 between = centres[j, :2] - centres[i, :2]
                 x, y = np.dot(between, u), np.dot(between, v)
                 along_u, along_v = half[i, 0] + half[j, turned] - abs(x), half[i, 1] + half[j, 1 - turned] - abs(y)
-                if not (1e-4 < min(along_u, along_v) < SHALLOW and max(along_u, along_v) > min(along_u, along_v) + 0.02):
+                if not (1e-4 - CLEAR < min(along_u, along_v) < SHALLOW and max(along_u, along_v) > min(along_u, along_v) + 0.02):
                     continue
                 axis = 0 if along_u < along_v else 1
                 push = u * np.sign(x) if axis == 0 else v * np.sign(y)

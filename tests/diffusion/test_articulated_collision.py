@@ -224,7 +224,7 @@ def test_a_step_is_never_longer_than_its_clip():
 def test_a_new_size_keeps_the_back_where_it_is():
     yaw = 0.7
     boxes = np.array([[[0, 0, 0, 1.0, 0.6, 0.8, math.cos(yaw), math.sin(yaw)]]])
-    after = resized(boxes, np.array([[[1.2, 0.5, 0.9]]]))[0, 0]
+    after = resized(boxes, np.array([[[1.2, 0.5, 0.9]]]), np.ones((1, 1), bool))[0, 0]
     front = np.array([math.sin(yaw), -math.cos(yaw)])
     assert after[3:6].tolist() == [1.2, 0.5, 0.9]
     np.testing.assert_allclose(after[:2] - front * 0.25, -front * 0.3, atol=1e-12)

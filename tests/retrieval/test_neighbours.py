@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pipeline.retrieval.wall_alignment import CLEAR, part, put_before_walls
+from pipeline.retrieval.wall_alignment import ASKEW, CLEAR, part, put_before_walls, straightened
 
 ROOM = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
 SIZE = np.array([1.0, 0.6, 0.9])
@@ -46,3 +46,18 @@ def test_what_reaches_deep_or_stands_askew_or_apart_or_above_stays():
     for second, yaw in (([1.6, 1.0, 0.0], 0.0), ([1.95, 1.0, 0.0], 0.4), ([2.05, 1.0, 0.0], 0.0), ([1.95, 1.0, 1.4], 0.0)):
         centres = np.array([[1.0, 1.0, 0.0], second])
         np.testing.assert_array_equal(part(centres, np.array([0.0, yaw]), np.tile(SIZE, (2, 1)), ROOM), centres)
+
+
+def test_what_is_hardly_turned_stands_straight_and_what_is_turned_stays_so():
+    askew = np.array([[0.0, 0.0], [4.0, 1.0], [3.2, 4.2], [-0.8, 3.2]])  # no wall along an axis
+    wall = np.arctan2(1.0, 4.0)
+    little, much = ASKEW * 0.9, ASKEW * 1.1
+    asked = wall + np.array([little, -little, np.pi / 2 + little, np.pi - little, much, -much])
+    straight = wall + np.array([0.0, 0.0, np.pi / 2, np.pi, much, -much])
+    np.testing.assert_allclose(straightened(asked, askew), straight, atol=1e-12)
+
+
+def test_units_that_touch_get_their_clearance():
+    centres = np.array([[1.0, 2.6, 0.0], [2.0, 2.6, 0.0]])
+    moved = part(centres, np.zeros(2), np.tile(SIZE, (2, 1)), ROOM)
+    assert moved[1, 0] - moved[0, 0] == pytest.approx(SIZE[0] + CLEAR)

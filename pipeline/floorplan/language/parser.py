@@ -337,7 +337,9 @@ class _Place:
             near = after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
             return near if claim.kind != "count" else likely[0] if likely and claim.least else ()
         lead = self.prompt[before[-1].end : min(c.start for c in self.claims if c.start >= before[-1].end)]
-        if len(before) > 1 and not COMMA.isdisjoint(lead) and {*before[-2].ids, *before[-1].ids} in self.compared:
+        at, joined = self._at(before[-1].end), self.scan.length(self._at(before[-1].end), "and")
+        goes_on = not COMMA.isdisjoint(lead) or (joined and self.scan.length(at + joined, "with"))  # "and have an oven"
+        if len(before) > 1 and goes_on and {*before[-2].ids, *before[-1].ids} in self.compared:
             before = before[:-1]  # "a study smaller than the bedroom, with a desk"
         room, usual = before[-1], self._natural(claim, before[-1])
         if self._dwelling(room) and not (claim.plural and usual):
