@@ -6,6 +6,7 @@
 A clone that is there already is brought up to date: what its stages have made, and DVC's cache, stay.
 """
 
+import hashlib
 import re
 import shutil
 import subprocess
@@ -28,6 +29,21 @@ def main(target: Path, preset: str, start: str = "") -> None:
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, copy)
     choose(target / "params.yaml", preset, start)
+    share_compiled(target)
+
+
+def share_compiled(target: Path) -> None:
+    """Give the clone what is compiled here, of the same code: numba names the folders of its cache by where the code lies."""
+
+    def place(folder: Path) -> str:
+        path = folder.resolve()
+        return f"{path.name}_{hashlib.sha1(str(path).encode()).hexdigest()}"  # noqa: S324 - numba's choice
+
+    code = {place(folder): folder for folder in Path("pipeline").rglob("*") if folder.is_dir()}
+    latest = max(Path("pipeline/__pycache__/numba").glob("*"), key=lambda folder: folder.stat().st_mtime, default=Path("none"))
+    for kept in latest.glob("*"):
+        if kept.name in code:
+            shutil.copytree(kept, target / kept.parent / place(target / code[kept.name]), dirs_exist_ok=True)
 
 
 def choose(path: Path, preset: str, start: str = "") -> None:
