@@ -351,12 +351,9 @@ class Scan:
     def _elsewhere(self, k: int) -> int:
         """Read where the last thing shall not stand: "the washing machine goes in the kitchen, not in the bathroom"."""
         none, last = self.length(k, "none"), self.claims[-1] if self.claims else None
-        place = (
-            self.length(k + none, "in")
-            if none and last is not None and last.inward and (self.text(k - 1) in COMMAS - STOPS or self.length(k - 1, "and"))
-            else 0
-        )
-        if last is None or not place:
+        joined = self.text(k - 1) in COMMAS - STOPS or self.length(k - 1, "and")
+        place = self.length(k + none, "in")
+        if last is None or not (none and last.inward and joined and place):
             return 0
         self._put("count", k, k + none, last.name, 0, 0)
         self.claims[-1] = replace(self.claims[-1], end=self.words[k + none + place - 1].end)

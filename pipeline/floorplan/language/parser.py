@@ -337,8 +337,9 @@ class _Place:
             near = after[0].ids if after and len(gap) <= FARTHEST // 2 else ()
             return near if claim.kind != "count" else likely[0] if likely and claim.least else ()
         lead = self.prompt[before[-1].end : min(c.start for c in self.claims if c.start >= before[-1].end)]
-        at, joined = self._at(before[-1].end), self.scan.length(self._at(before[-1].end), "and")
-        goes_on = not COMMA.isdisjoint(lead) or (joined and self.scan.length(at + joined, "with"))  # "and have an oven"
+        at = self._at(before[-1].end)
+        also = self.scan.length(at, "and")  # "larger than the living room and have an oven"
+        goes_on = not COMMA.isdisjoint(lead) or (also and self.scan.length(at + also, "with"))
         if len(before) > 1 and goes_on and {*before[-2].ids, *before[-1].ids} in self.compared:
             before = before[:-1]  # "a study smaller than the bedroom, with a desk"
         room, usual = before[-1], self._natural(claim, before[-1])
@@ -352,9 +353,8 @@ class _Place:
         if host or ((likely or studio) and not usual and not COMMA.isdisjoint(lead)):
             self.host, self.until = host or (likely or studio)[0], claim.end
             return self.host  # "a studio with a bathroom, put a bed and a desk in it"
-        placed = COMMA.isdisjoint(lead) and any(
-            self.scan.fronted(self._at(m.start)) for m in before if m.ids == room.ids
-        )  # "in the office put ..."
+        same = [m for m in before if m.ids == room.ids]
+        placed = COMMA.isdisjoint(lead) and any(self.scan.fronted(self._at(m.start)) for m in same)  # "in the office put ..."
         if usual or placed or (joined and self._led(room, claim)):
             return room.ids
         mine = not joined and not barred
