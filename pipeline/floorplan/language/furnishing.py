@@ -122,6 +122,7 @@ class Scan:
         self.numbers |= {w.start: (w.end, min(m.number, MOST)) for w, m in alone if m is not None and m.kind == "num"}
         self.numbers |= {written[m.first].start: (written[m.last - 1].end, min(m.number, MOST)) for m in tokens if m.kind == "num"}
         self.counted = {written[m.first].start for m in tokens if (m.kind, m.value) == ("unit", "rooms")}  # "trois pièces" are rooms
+        self.levels = {written[m.first].start for m in tokens if m.kind == "level"}
         stems, storeys = [w.stem for w in self.words], set(lexicon()["storeys"])
         spelt = tuple(w.text for w in self.words)
         found = (
@@ -186,7 +187,8 @@ class Scan:
                 return True
         listed = name in lexicon()["listed"] and self._listed(k, size)
         at = self._past(k + size)  # "a desk and a wardrobe in the hall"
-        return listed or (bool(self.length(at, "in")) and any(owner(at + d) for d in (1, 2, 3)))
+        placed = self.length(at, "in") and self.words[at].start not in self.levels  # "un bureau, et en haut trois chambres"
+        return listed or (bool(placed) and any(owner(at + d) for d in (1, 2, 3)))
 
     def fronted(self, k: int) -> bool:  # "in the office a wardrobe"
         """Whether the room at word k stands first in its clause, as a place."""

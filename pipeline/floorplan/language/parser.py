@@ -356,19 +356,19 @@ class _Place:
         same = [m for m in before if m.ids == room.ids]
         placed = COMMA.isdisjoint(lead) and any(self.scan.fronted(self._at(m.start)) for m in same)  # "in the office put ..."
         if usual or placed or (joined and self._led(room, claim)):
-            return room.ids
+            return room.ids if claim.kind == "count" else self._and_in(before[: before.index(room) + 1][::-1])
         mine = not joined and not barred
         return likely[0] if likely else room.ids if mine else ()  # "two bedrooms, a kitchen and a sofa": the home's
 
     def _and_in(self, after: Sequence[Mention]) -> tuple[str, ...]:
-        """Return the rooms of the first mention and of those that go on from it: "in the bedroom and in the study"."""
+        """Return the rooms of the first mention and of those that go on from it: "in the bedroom and in the study"; in front of a wish they come last first."""
         ids = after[0].ids
-        for one, other in itertools.pairwise(after):
-            k = self._at(one.end)
+        for pair in itertools.pairwise(after):
+            k = self._at(min(m.end for m in pair))
             joined = self.scan.text(k) not in COMMAS and self.scan.length(k, "and")
             if not joined or not self.scan.length(k + joined, "in"):
                 break
-            ids += tuple(i for i in other.ids if i not in ids)
+            ids += tuple(i for i in pair[1].ids if i not in ids)
         return ids
 
     def _dwelling(self, room: Mention) -> bool:
