@@ -13,6 +13,7 @@ from torch import Tensor
 
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
 from pipeline.diffusion.context import KINDS, Floor
+from pipeline.diffusion.poses import UNTOLD
 from pipeline.diffusion.rooms import SWEEPS, Example
 from pipeline.diffusion.settings import MOST_SLOTS
 
@@ -66,15 +67,16 @@ class RoomBatch(Rows):
 
 @dataclass(frozen=True, slots=True)
 class Objects(Rows):
-    """The objects of B rooms: `classes` (B, N), C for padding; `channels` (B, N, 40) normalised; `sweeps` (B, N, K, 2, 3) [m]."""
+    """The objects of B rooms: `classes` (B, N), C for padding; `poses` (B, N); `channels` (B, N, 40) normalised; `sweeps` (B, N, K, 2, 3) [m]."""
 
     classes: Tensor
+    poses: Tensor
     channels: Tensor
     sweeps: Tensor
 
     def first(self, slots: int) -> Objects:
         """Take the first slots; objects come first, so none is lost where a room has no more than that."""
-        return Objects(self.classes[:, :slots], self.channels[:, :slots], self.sweeps[:, :slots])
+        return Objects(self.classes[:, :slots], self.poses[:, :slots], self.channels[:, :slots], self.sweeps[:, :slots])
 
 
 def bucket_of(counts: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -92,15 +94,16 @@ def room_batch(floors: Sequence[Floor], layouts: Sequence[int], heights: Sequenc
 def collate(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[RoomBatch, Objects]:
     """Pad examples to `slots` and stack them."""
     classes = torch.full((len(examples), slots), codec.classes)
+    poses = torch.full((len(examples), slots), UNTOLD)
     channels = torch.zeros(len(examples), slots, CHANNELS)
     sweeps = torch.full((len(examples), slots, SWEEPS, 2, 3), torch.nan)
     for i, example in enumerate(examples):
         n = len(example.classes)
-        classes[i, :n] = torch.from_numpy(example.classes)
+        classes[i, :n], poses[i, :n] = torch.from_numpy(example.classes), torch.from_numpy(example.poses)
         channels[i, :n] = codec.normalise(torch.from_numpy(example.continuous).float(), classes[i, :n])
         sweeps[i, :n] = torch.from_numpy(example.sweeps)
     rooms = room_batch([e.floor for e in examples], [e.layout for e in examples], [e.context.height for e in examples])
-    return rooms, Objects(classes, channels, sweeps)
+    return rooms, Objects(classes, poses, channels, sweeps)
 
 
 def reflections(rng: torch.Generator, count: int) -> Tensor:
@@ -132,4 +135,4 @@ def moved_objects(objects: Objects, motion: Tensor) -> Objects:
     mirrored = (torch.linalg.det(motion) < 0)[:, None, None, None]
     low, high = objects.sweeps[..., 0, :], objects.sweeps[..., 1, :]
     turned = torch.stack([torch.cat([-high[..., :1], low[..., 1:]], -1), torch.cat([-low[..., :1], high[..., 1:]], -1)], -2)
-    return Objects(objects.classes, x, torch.where(mirrored[..., None], turned, objects.sweeps))
+    return Objects(objects.classes, objects.poses, x, torch.where(mirrored[..., None], turned, objects.sweeps))

@@ -18,6 +18,7 @@ from torch import Tensor, nn
 
 from pipeline.arrays import Bools, Floats, Ints
 from pipeline.diffusion.context import KINDS, CategoryBounds, Floor
+from pipeline.diffusion.poses import PoseModel, fit_poses
 from pipeline.diffusion.settings import InventorySettings
 from pipeline.geometry.compiled import compiled
 from pipeline.tensors import Checkpoint, advance, cosine, generator, initial
@@ -34,7 +35,7 @@ SEVERAL, LIKELY = 2, 0.003  # so many of a class, or more, are drawn only where 
 
 
 class Inventory(nn.Module):
-    """Logits of each class's count, given the room and the counts of the classes before it."""
+    """Logits of each class's count, given the room and the counts of the classes before it; beside it the model of how they stand, `poses`."""
 
     def __init__(self, classes: int, layouts: int, width: int) -> None:
         super().__init__()
@@ -46,6 +47,7 @@ class Inventory(nn.Module):
         self.left = nn.Linear(3, width)  # of a told number: how many are still to come
         self.think = nn.Sequential(nn.Linear(width, 2 * width), nn.SiLU(), nn.Linear(2 * width, width), nn.SiLU())
         self.out = nn.Linear(width, MOST + 1)
+        self.poses = PoseModel(classes, layouts, ROOM_FEATURES, width)
         self.own = nn.Parameter(torch.zeros(classes, layouts, MOST + 1))  # how often rooms of a type hold so many, all else unknown
         nn.init.normal_(self.held, std=0.1)
         nn.init.zeros_(self.out.weight)
@@ -218,11 +220,13 @@ def _keep_longest(length: float, longest: Floats) -> None:
 
 
 class Holdings(NamedTuple):
-    """What n rooms hold: features (n, F), types (n,), counts (n, C)."""
+    """What n rooms hold: features (n, F), types (n,), counts (n, C); classes, rising, and pose classes (n, N) of their objects, C and UNTOLD for padding."""
 
     features: NDArray[np.float32]
     layouts: NDArray[np.int64]
     counts: NDArray[np.int64]
+    classes: NDArray[np.int64]
+    poses: NDArray[np.int64]
 
 
 def initial_inventory(contents: Holdings, types: int, width: int, seed: int) -> Inventory:
@@ -234,6 +238,7 @@ def initial_inventory(contents: Holdings, types: int, width: int, seed: int) -> 
             rooms = counts[layouts == k].clamp_max(MOST)
             share = torch.stack([(rooms == n).float().sum(0) for n in range(MOST + 1)], -1) + 0.02
             net.own[:, k] = (share / share.sum(-1, keepdim=True)).log()
+    net.poses.learn_shares(layouts, torch.from_numpy(contents.classes), torch.from_numpy(contents.poses))
     return net
 
 
@@ -245,7 +250,7 @@ def fit(
     With a `checkpoint` it goes on from there, and is kept there `every` so many steps.
     """
     rng = generator(seed, "inventory")
-    features, layouts, counts = (torch.from_numpy(part) for part in contents)
+    features, layouts, counts, classes, poses = (torch.from_numpy(part) for part in contents)
     optimiser = torch.optim.AdamW(net.parameters(), weight_decay=1e-3)
     done = checkpoint.resume(net, optimiser, rng) if checkpoint else 0
     for step in range(done, settings.steps):
@@ -255,6 +260,7 @@ def fit(
         advance(optimiser, settings.learning_rate * min(1.0, (step + 1) / 50) * cosine(step / settings.steps), 1.0)
         if checkpoint and (step + 1) % every == 0:
             checkpoint.keep(step + 1, net, optimiser, rng)
+    fit_poses(net.poses, (features, layouts, classes, poses), settings.steps // 4, settings.batch, settings.learning_rate, seed)
     return net.eval()
 
 

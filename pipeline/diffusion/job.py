@@ -14,6 +14,7 @@ from pipeline.diffusion.batch import collate
 from pipeline.diffusion.checkpoint import FORMAT, Header, load_weights, require_vocabulary
 from pipeline.diffusion.codec import Codec, Normalisation
 from pipeline.diffusion.inventory import Holdings, Inventory, initial_inventory, room_features
+from pipeline.diffusion.poses import UNTOLD
 from pipeline.diffusion.process_group import ProcessGroup
 from pipeline.diffusion.rooms import SHAPES, TABLES, Example, Sets, layout_weights, read_sets, stacked
 from pipeline.diffusion.set_transformer import SetTransformer
@@ -101,4 +102,9 @@ def holdings(examples: Sequence[Example], header: Header) -> Holdings:
     """Return what rooms hold, as the inventory model learns it."""
     features = np.stack([room_features(e.floor, e.context.height) for e in examples])
     layouts = np.array([e.layout for e in examples], np.int64)
-    return Holdings(features, layouts, np.stack([np.bincount(e.classes, minlength=len(header.norm.classes)) for e in examples]))
+    kinds = len(header.norm.classes)
+    classes, poses = np.full((len(examples), header.slots), kinds), np.full((len(examples), header.slots), UNTOLD)
+    for row, e in enumerate(examples):
+        order = np.argsort(e.classes, kind="stable")
+        classes[row, : len(order)], poses[row, : len(order)] = e.classes[order], e.poses[order]
+    return Holdings(features, layouts, np.stack([np.bincount(e.classes, minlength=kinds) for e in examples]), classes, poses)

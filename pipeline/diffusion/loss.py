@@ -15,15 +15,17 @@ from pipeline.diffusion.settings import TrainSettings
 MOST_SHIFT = 0.1  # largest change of a clean channel that the constraint term may ask for
 MIDDLE, BREADTH = 0.5, 2.5  # mean and deviation of the levels at which rooms take shape
 UNIFORM = 0.5  # share of the levels that is drawn evenly from all that a sampler meets
+TOLD = 0.9  # share of the rooms whose poses are told
 SEEN = 0.5  # share of the rooms that have been looked at before, as all have but at a sampler's first step
 
 
 class Draw(NamedTuple):
-    """What one step draws: levels lambda (B,), noise (B, N, 40), and which rooms (B,) have been looked at before."""
+    """What one step draws: levels lambda (B,), noise (B, N, 40), which rooms (B,) have been looked at before, and of which the poses are told."""
 
     level: Tensor
     noise: Tensor
     seen: Tensor
+    told: Tensor
 
 
 class Loss(NamedTuple):
@@ -38,7 +40,8 @@ def draw(rng: torch.Generator, batch: int, slots: int) -> Draw:
     even = FIRST + (LAST - FIRST) * torch.rand(batch, generator=rng)
     middle = (MIDDLE + BREADTH * torch.randn(batch, generator=rng)).clamp(FIRST, LAST)
     level = torch.where(torch.rand(batch, generator=rng) < UNIFORM, even, middle)
-    return Draw(level, torch.randn(batch, slots, CHANNELS, generator=rng), torch.rand(batch, generator=rng) < SEEN)
+    noise, seen = torch.randn(batch, slots, CHANNELS, generator=rng), torch.rand(batch, generator=rng) < SEEN
+    return Draw(level, noise, seen, torch.rand(batch, generator=rng) < TOLD)
 
 
 def constraint_descent(x0: Tensor, classes: Tensor, codec: Codec, rooms: RoomBatch, sweeps: Tensor) -> Tensor:
@@ -63,7 +66,8 @@ def denoising_loss(net: SetTransformer, rooms: RoomBatch, objects: Objects, draw
     alpha, sigma = (v[:, None, None] for v in alpha_sigma(drawn.level))
     occupied = (classes < codec.classes)[..., None]
     xt = alpha * objects.channels + sigma * drawn.noise
-    answers = net(xt, classes, drawn.level, rooms, before=expected_before(net, xt, objects, rooms, drawn))
+    poses = objects.poses * drawn.told[:, None]
+    answers = net(xt, classes, drawn.level, rooms, before=expected_before(net, xt, objects, rooms, drawn), poses=poses)
     noise = drawn.noise
     near = torch.nonzero(drawn.level > lambda_of(settings.constraint_below))[:, 0]
     if settings.constraint and len(near):
@@ -88,7 +92,9 @@ def expected_before(net: SetTransformer, xt: Tensor, objects: Objects, rooms: Ro
     before = alpha_sigma(drawn.level)[0][:, None, None] * xt[..., : YAW.stop]
     rows = torch.nonzero(drawn.seen)[:, 0]
     if len(rows):
-        before[rows] = net.expected(xt[rows], objects.classes[rows], drawn.level[rows], rooms.rows(rows))[..., : YAW.stop]
+        poses = objects.poses[rows] * drawn.told[rows, None]
+        seen = net.expected(xt[rows], objects.classes[rows], drawn.level[rows], rooms.rows(rows), poses=poses)
+        before[rows] = seen[..., : YAW.stop]
     return before
 
 

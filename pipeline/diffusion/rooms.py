@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from pipeline import tables, taxonomy
 from pipeline.diffusion.codec import CHANNELS, LATENT
 from pipeline.diffusion.context import Floor, RoomContext, RoomOpening, floor_tokens
+from pipeline.diffusion.poses import pose_classes
 from pipeline.errors import ContentError
+from pipeline.relations.arrangement import Arrangement
 from schemas import ASSET_JOINTS, LATENTS, OBJECTS, OPENINGS, ROOMS, SCENES
 
 Row = Mapping[str, Any]
@@ -25,8 +27,8 @@ SHAPES = "data/latents/latents.parquet"
 class Example:
     """One furnished room, n objects, room frame.
 
-    `layout` is the index of its type; `classes` (n,); `continuous` (n, 40) in metres, cos, sin, raw latents; `sweeps` (n, K, 2, 3) [m],
-    object frame, NaN for none.
+    `layout` is the index of its type; `classes` (n,); `poses` (n,), see `poses`; `continuous` (n, 40) in metres, cos, sin, raw latents;
+    `sweeps` (n, K, 2, 3) [m], object frame, NaN for none.
     """
 
     key: str
@@ -35,6 +37,7 @@ class Example:
     context: RoomContext
     floor: Floor
     classes: NDArray[np.int64]
+    poses: NDArray[np.int64]
     continuous: NDArray[np.float64]
     sweeps: NDArray[np.float32]
 
@@ -99,7 +102,8 @@ def example_of(
             swept[i, : len(boxes)] = boxes[:SWEEPS] * np.array(row["scale"], np.float32)
     labels = np.array([classes.index(o["category"]) for o in objects], np.int64)
     continuous = np.concatenate([position, size, np.cos(yaw), np.sin(yaw), latent], 1)
-    return Example(key, split, layout, context, floor_tokens(context), labels, continuous, swept)
+    stands = Arrangement(key, context.layout_type, context.polygon - context.centre, (), position, yaw[:, 0], size)
+    return Example(key, split, layout, context, floor_tokens(context), labels, pose_classes(stands), continuous, swept)
 
 
 def sets_of(

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 from pipeline import seeds, taxonomy
 from pipeline.arrays import Bools, Floats, Ints
@@ -21,9 +21,10 @@ from pipeline.diffusion.codec import CHANNELS, Codec
 from pipeline.diffusion.context import Floor, Library, Proposal, RoomContext, floor_tokens
 from pipeline.diffusion.guidance import PRESSED, Guidance
 from pipeline.diffusion.inventory import DRAWS, Ask, Inventory, draw_inventories, room_features
+from pipeline.diffusion.poses import draw_poses
 from pipeline.diffusion.schedule import Expect, denoise, levels, paper_levels
 from pipeline.diffusion.set_transformer import FEW
-from pipeline.diffusion.settings import SampleSettings
+from pipeline.diffusion.settings import MOST_SLOTS, SampleSettings
 from pipeline.errors import ContentError
 
 Key = tuple[int, ...]  # home index, room number, attempt; behind them which draw it is, from the second on
@@ -34,8 +35,8 @@ class Denoiser(Protocol):
 
     codec: Codec
 
-    def expectation(self, rooms: RoomBatch, classes: Tensor) -> Expect:
-        """Return what is expected of noisy slots (B, N, 40) at a level, for rooms whose objects are of `classes` (B, N), C for padding."""
+    def expectation(self, rooms: RoomBatch, classes: Tensor, poses: Tensor) -> Expect:
+        """Return what is expected of noisy slots (B, N, 40) at a level, for rooms whose objects are of `classes` (B, N), C for padding, in `poses` (B, N)."""
         ...
 
 
@@ -122,8 +123,10 @@ class Sampler:
                 classes = np.full((len(part), max(len(inventories[i]) for i in part)), len(self.header.norm.classes))
                 for row, i in enumerate(part):
                     classes[row, : len(inventories[i])] = inventories[i]
-                labels = torch.from_numpy(classes).to(self.net.codec.mean.device)
-                clean, depths = self._batch(conditioning, labels, [keys[i] for i in part], [rooms[i].taste for i in part])
+                own = [keys[i] for i in part]
+                poses = self._poses(torch.from_numpy(classes), [floors[i] for i in part], conditioning, own)
+                labels, poses = (v.to(self.net.codec.mean.device) for v in (torch.from_numpy(classes), poses))
+                clean, depths = self._batch(conditioning, labels, poses, own, [rooms[i].taste for i in part])
                 for i, x0, mine, depth in zip(part, clean, labels, depths.tolist(), strict=True):
                     arranged[i] = depth, self.net.codec.proposals(x0, mine, rooms[i])
         return arranged
@@ -135,8 +138,17 @@ class Sampler:
         for start in range(0, len(filled), self.settings.batch):
             yield filled[start : start + self.settings.batch]
 
-    def _batch(self, rooms: RoomBatch, classes: Tensor, keys: Sequence[Key], tastes: Sequence[Any]) -> tuple[Tensor, Floats]:
-        """Sample one padded batch of objects of `classes` (batch, slots): x0 (batch, slots, 40) on their device, and how deep the worst overlap of each room is [m]."""
+    def _poses(self, classes: Tensor, floors: Sequence[Floor], rooms: RoomBatch, keys: Sequence[Key]) -> Tensor:
+        """Draw how the objects of rooms stand, pose classes (batch, slots); few rooms are filled up with copies, for their bits not to hang on their number."""
+        rows = [*range(len(keys)), *[0] * (FEW - len(keys))]
+        features = np.stack([room_features(floor, height) for floor, height in zip(floors, rooms.height.tolist(), strict=True)])
+        uniform = np.stack([seeds.generator(self.seed, "poses", *key).random(MOST_SLOTS) for key in keys])
+        padded = nn.functional.pad(classes, (0, MOST_SLOTS - classes.shape[1]), value=len(self.header.norm.classes))[rows]
+        drawn = draw_poses(self.inventory.poses, torch.from_numpy(features[rows]), rooms.layout[rows], padded, uniform[rows])
+        return drawn[: len(keys), : classes.shape[1]]
+
+    def _batch(self, rooms: RoomBatch, classes: Tensor, poses: Tensor, keys: Sequence[Key], tastes: Sequence[Any]) -> tuple[Tensor, Floats]:
+        """Sample one padded batch of objects of `classes` in `poses` (batch, slots): x0 (batch, slots, 40) on their device, and how deep the worst overlap of each room is [m]."""
         device = classes.device
         rooms = rooms.to(device)
         names = self.header.norm.classes
@@ -154,7 +166,7 @@ class Sampler:
             return drawn.to(device)
 
         count = self.settings.evaluations
-        expect = self.net.expectation(rooms, classes)
+        expect = self.net.expectation(rooms, classes, poses)
         x0 = denoise(expect, partial(guidance.step, self.net.codec), noise, levels(count) if count else paper_levels(), self.settings.eta)
         return x0, guidance.pressure(self.net.codec, x0)
 

@@ -26,6 +26,7 @@ from pipeline.diffusion.batch import RoomBatch
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec, Normalisation
 from pipeline.diffusion.context import KINDS
 from pipeline.diffusion.padded import PaddedRooms
+from pipeline.diffusion.poses import POSES, UNTOLD
 from pipeline.diffusion.ragged import RaggedRooms
 from pipeline.diffusion.relations import (
     PAIR_FEATURES,
@@ -159,6 +160,8 @@ class SetTransformer(nn.Module):
         self.norm, self.settings, self.codec = norm, settings, Codec(norm)
         self.slot = nn.Linear(CHANNELS, width)  # two vectors of two channels go in as four lengths and products
         self.kind = nn.Embedding(len(norm.classes) + 1, width)
+        self.pose = nn.Embedding(len(POSES), width, padding_idx=UNTOLD)
+        nn.init.zeros_(self.pose.weight)
         self.floor_in = nn.Sequential(nn.Linear(FLOOR_FEATURES, width), nn.SiLU(), nn.Linear(width, width))
         self.layout = nn.Embedding(layouts, width)
         self.room = nn.Sequential(nn.Linear(2 * width + 3, width), nn.SiLU(), nn.Linear(width, width))
@@ -200,17 +203,26 @@ class SetTransformer(nn.Module):
         rooms: RoomBatch,
         code: FloorCode | None = None,
         before: Tensor | None = None,
+        poses: Tensor | None = None,
     ) -> tuple[Tensor, ...]:
         """Return what each pass answers (B, N, 40): v = alpha eps - sigma x0, of slots x at levels (B,), the last one best.
 
-        `before` (B, N, >= 8): the clean channels that were expected before, at a level of more noise or at this one.
+        `before` (B, N, >= 8): the clean channels that were expected before, at a level of more noise or at this one. `poses` (B, N): the pose classes
+        where they are told.
         """
-        return self.answers(x, classes, level, self._padded(rooms, classes), code or self.floor_code(rooms, classes), before)
+        return self.answers(x, classes, level, self._padded(rooms, classes), code or self.floor_code(rooms, classes), before, poses)
 
     def answers(
-        self, x: Tensor, classes: Tensor, level: Tensor, rooms: BatchLayout, code: FloorCode, before: Tensor | None = None
+        self,
+        x: Tensor,
+        classes: Tensor,
+        level: Tensor,
+        rooms: BatchLayout,
+        code: FloorCode,
+        before: Tensor | None = None,
+        poses: Tensor | None = None,
     ) -> tuple[Tensor, ...]:
-        """Return what each pass answers (..., 40) of slots x (..., 40) of `classes` (...), however the rooms stand in them."""
+        """Return what each pass answers (..., 40) of slots x (..., 40) of `classes` and `poses` (...), however the rooms stand in them."""
         condition = nn.functional.silu(by_room(self.level, level_features(level)) + code.room)
         by_level = alpha_sigma(level)
         alpha, sigma = (rooms.to_objects(v[:, None]) for v in by_level)
@@ -218,6 +230,7 @@ class SetTransformer(nn.Module):
         front = torch.stack([x[..., 7], -x[..., 6]], -1)
         slots = NoisySlots((x[..., :2], x[..., YAW], front), torch.stack([spread * self.codec.reach, spread], -1))
         tokens = self.slot(torch.cat([invariants(x[..., :2], x[..., YAW]), x[..., 2:6], x[..., YAW.stop :]], -1)) + self.kind(classes)
+        tokens = tokens if poses is None else tokens + self.pose(poses)
         guess, answer, answers = (alpha * x if before is None else before)[..., Geometry], None, []
         per_pass = 2 * self.settings.layers + 1
         for number, look in enumerate(self.passes):
@@ -236,26 +249,28 @@ class SetTransformer(nn.Module):
         rooms: RoomBatch,
         code: FloorCode | None = None,
         before: Tensor | None = None,
+        poses: Tensor | None = None,
     ) -> Tensor:
         """Return the expected clean channels x0 (B, N, 40), within what data can be: in rooms unlike any in training a step could else run away."""
         alpha, sigma = (v[:, None, None] for v in alpha_sigma(level))
-        answer: Tensor = self(x, classes, level, rooms, code, before)[-1]
+        answer: Tensor = self(x, classes, level, rooms, code, before, poses)[-1]
         return clamp_channels(self.clean(x, answer, alpha, sigma))
 
-    def expectation(self, rooms: RoomBatch, classes: Tensor) -> Expect:
-        """Return what is expected of slots x (B, N, 40), level after level of falling noise; `classes` (B, N), C for padding.
+    def expectation(self, rooms: RoomBatch, classes: Tensor, poses: Tensor) -> Expect:
+        """Return what is expected of slots x (B, N, 40), level after level of falling noise; `classes` (B, N), C for padding, and `poses` (B, N).
 
         On a CPU the rooms stand in one list: an answer costs what is there, and has the same bits whichever other rooms are.
         """
         if classes.device.type != "cpu":
-            return self._expectation(classes, self._padded(rooms, classes), self.floor_code(rooms, classes))
+            return self._expectation(classes, poses, self._padded(rooms, classes), self.floor_code(rooms, classes))
         copies = 1 if int((classes < self.codec.classes).sum()) >= FEW else FEW
         everything, held = rooms.rows(torch.arange(len(classes)).repeat(copies)), classes.repeat(copies, 1)
+        stand = poses.repeat(copies, 1)
         there = held < self.codec.classes
         layout = RaggedRooms.of(everything, there.sum(1), self.settings.heads)
         padding = (0, MOST_SLOTS - held.shape[1])  # to one number of slots, for sums over them to have the same bits
         code = self.floor_code(everything, nn.functional.pad(held, padding, value=self.codec.classes), layout)
-        expect = self._expectation(held[there], layout, code)
+        expect = self._expectation(held[there], stand[there], layout, code)
 
         def expect_padded(x: Tensor, level: float) -> Tensor:
             noisy = x.repeat(copies, 1, 1)
@@ -263,14 +278,14 @@ class SetTransformer(nn.Module):
 
         return expect_padded
 
-    def _expectation(self, classes: Tensor, layout: BatchLayout, code: FloorCode) -> Expect:
+    def _expectation(self, classes: Tensor, poses: Tensor, layout: BatchLayout, code: FloorCode) -> Expect:
         ones = torch.ones(len(code.room), device=classes.device)
         before: Tensor | None = None
 
         def expect(x: Tensor, level: float) -> Tensor:
             nonlocal before
             with torch.inference_mode():
-                answer = self.answers(x, classes, level * ones, layout, code, before)[-1]
+                answer = self.answers(x, classes, level * ones, layout, code, before, poses)[-1]
                 before = clamp_channels(self.clean(x, answer, *alpha_sigma_of(level)))
             return before
 

@@ -3,6 +3,7 @@ import torch
 
 from pipeline.diffusion.batch import collate, moved_rooms
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
+from pipeline.diffusion.poses import POSES, TURNED, UNTOLD
 from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import ModelSettings
 from tests.diffusion.small_world import LAYOUTS
@@ -16,6 +17,7 @@ def net(norm, request):
         for p in made.parameters():
             if p.abs().max() == 0:
                 p.normal_(0, 0.1)
+        made.pose.weight[UNTOLD] = 0.0  # as it begins, and no gradient moves it
     return made
 
 
@@ -65,13 +67,14 @@ def test_padding_and_other_rooms_change_nothing(net, noisy):
 def test_rooms_in_one_list_get_the_answers_of_padded_ones(net, noisy):
     rooms, classes, x, _ = noisy
     held = classes < net.codec.classes
+    poses = torch.where(held, torch.arange(8) % len(POSES), UNTOLD)
     for level in (-5.0, 0.0, 2.0, 6.0):
         at = torch.full((len(x),), level)
-        padded, expect = net.expected(x, classes, at, rooms), net.expectation(rooms, classes)
+        padded, expect = net.expected(x, classes, at, rooms, poses=poses), net.expectation(rooms, classes, poses)
         listed = expect(x, level)
         torch.testing.assert_close(listed[held], padded[held], atol=2e-3, rtol=1e-3)
         again = net.expected(
-            x, classes, at, rooms, before=padded
+            x, classes, at, rooms, before=padded, poses=poses
         )  # what was expected is seen the next time; in units of the noise, rounding grows
         torch.testing.assert_close(expect(x, level)[held], again[held], atol=2e-2, rtol=1e-2)
         assert not listed[~held].any()
@@ -87,6 +90,14 @@ def test_a_shared_code_saves_nothing_but_time(net, noisy):
 
 
 @torch.no_grad()
+def test_a_pose_that_is_told_matters_and_one_that_is_not_says_nothing(net, noisy):
+    rooms, classes, x, level = noisy
+    whole = net.expected(x, classes, level, rooms)
+    torch.testing.assert_close(net.expected(x, classes, level, rooms, poses=torch.full_like(classes, UNTOLD)), whole)
+    assert not torch.allclose(net.expected(x, classes, level, rooms, poses=torch.full_like(classes, TURNED)), whole, atol=1e-3)
+
+
+@torch.no_grad()
 def test_classes_walls_and_doors_matter(net, noisy):
     rooms, classes, x, level = noisy
     whole = net.expected(x, classes, level, rooms)
@@ -99,10 +110,11 @@ def test_classes_walls_and_doors_matter(net, noisy):
 
 def test_every_pass_is_trained(net, noisy):
     rooms, classes, x, level = noisy
-    answers = net(x, classes, level, rooms)
+    answers = net(x, classes, level, rooms, poses=torch.full_like(classes, TURNED))
     assert len(answers) == net.settings.passes
     sum((a**2).mean() for a in answers).backward()
     assert all(p.grad is not None for p in net.parameters())
+    assert not net.pose.weight.grad[UNTOLD].any()
     net.zero_grad()
 
 

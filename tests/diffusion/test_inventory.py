@@ -16,6 +16,7 @@ from pipeline.diffusion.inventory import (
     repair_counts,
     room_features,
 )
+from pipeline.diffusion.poses import UNTOLD
 from pipeline.diffusion.settings import InventorySettings
 from tests.diffusion.small_world import CLASSES, LAYOUTS, make_examples
 
@@ -26,7 +27,12 @@ BED, NIGHTSTAND, TABLE, CHAIR = (CLASSES.index(c) for c in ("double_bed", "night
 def rooms():
     made = make_examples(200)
     features = np.stack([room_features(e.floor, e.context.height) for e in made])
-    return Holdings(features, np.array([e.layout for e in made]), np.stack([np.bincount(e.classes, minlength=len(CLASSES)) for e in made]))
+    classes, poses = (
+        np.stack([np.pad(v, (0, 12 - len(v)), constant_values=c) for v in each])
+        for each, c in (([e.classes for e in made], len(CLASSES)), ([e.poses for e in made], UNTOLD))
+    )
+    counts = np.stack([np.bincount(e.classes, minlength=len(CLASSES)) for e in made])
+    return Holdings(features, np.array([e.layout for e in made]), counts, classes, poses)
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +42,7 @@ def net(rooms):
 
 
 def drawn(net, rooms, asks, seed=0):
-    features, layouts, _ = rooms
+    features, layouts, *_ = rooms
     n = len(asks)
     uniform = seeds.generator(seed, "draws").random((n, DRAWS, len(CLASSES)))
     return np.stack(draw_inventories(net, torch.from_numpy(features[:n]), torch.from_numpy(layouts[:n]), asks, uniform))

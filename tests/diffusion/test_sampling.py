@@ -64,7 +64,7 @@ class Centring:
     def __init__(self, codec):
         self.codec = codec
 
-    def expectation(self, rooms, classes):
+    def expectation(self, rooms, classes, poses):
         return lambda x, level: torch.zeros_like(x)
 
 
@@ -201,8 +201,8 @@ def test_a_room_that_stays_pressed_is_drawn_again_and_its_least_pressed_draw_is_
     depths = {}
     batch = Sampler._batch
 
-    def noted(self, conditioning, classes, drawn, tastes):
-        clean, pressed = batch(self, conditioning, classes, drawn, tastes)
+    def noted(self, conditioning, classes, poses, drawn, tastes):
+        clean, pressed = batch(self, conditioning, classes, poses, drawn, tastes)
         depths.update(zip(drawn, pressed.tolist(), strict=True))
         return clean, pressed
 
