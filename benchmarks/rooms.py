@@ -61,10 +61,10 @@ Furniture = Sequence[Sequence[Placement]]  # of each room
 class Unasked(Sampler):
     """A sampler that hears of no number, no bounds and no company."""
 
-    def inventories(self, rooms: Any, keys: Any, floors: Any) -> Any:
+    def inventories(self, rooms: Any, keys: Any, features: Any) -> Any:
         """Draw what each room holds."""
         free = [replace(room, n_target=None, category_bounds=(), company=()) for room in rooms]
-        return Sampler.inventories(self, free, keys, floors)
+        return Sampler.inventories(self, free, keys, features)
 
 
 def arrangements(floors: Sequence[Arrangement], jobs: Sequence[RoomJob], made: Furniture) -> list[Arrangement]:

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from pipeline import seeds, taxonomy
@@ -27,6 +28,7 @@ from pipeline.diffusion.set_transformer import FEW
 from pipeline.diffusion.settings import MOST_SLOTS, SampleSettings
 from pipeline.errors import ContentError
 
+Singles = NDArray[np.float32]
 Key = tuple[int, ...]  # home index, room number, attempt; behind them which draw it is, from the second on
 
 
@@ -77,19 +79,20 @@ class Sampler:
         pressed draw is kept.
         """
         floors = [floor_tokens(r) for r in rooms]
+        features = [room_features(floor, r.height) for floor, r in zip(floors, rooms, strict=True)]
         kept: list[tuple[float, list[Proposal]]] = [(np.inf, [])] * len(rooms)
-        pending, held = list(range(len(rooms))), self.inventories(rooms, keys, floors)
+        pending, held = list(range(len(rooms))), self.inventories(rooms, keys, features)
         for draw in range(1 + self.settings.redraws):
-            own, tokens = [rooms[i] for i in pending], [floors[i] for i in pending]
+            own, tokens, told = [rooms[i] for i in pending], [floors[i] for i in pending], [features[i] for i in pending]
             drawn = [(*keys[i], draw) if draw else keys[i] for i in pending]
-            things = self.inventories(own, drawn, tokens) if draw > 1 else [held[i] for i in pending]
-            for i, furnished in zip(pending, self.arrange(own, drawn, things, tokens), strict=True):
+            things = self.inventories(own, drawn, told) if draw > 1 else [held[i] for i in pending]
+            for i, furnished in zip(pending, self.arrange(own, drawn, things, tokens, told), strict=True):
                 kept[i] = min(kept[i], furnished, key=lambda room: room[0])
             pending = [i for i in pending if kept[i][0] > PRESSED]
         return [proposals for _, proposals in kept]
 
-    def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], floors: Sequence[Floor]) -> list[Ints]:
-        """Draw what each room holds: class indices (n,), rising. Told numbers and category_bounds are met, at most `slots` objects."""
+    def inventories(self, rooms: Sequence[RoomContext], keys: Sequence[Key], features: Sequence[Singles]) -> list[Ints]:
+        """Draw what each room holds: class indices (n,), rising; `features` (F,) are of each room. Told numbers and category_bounds are met, at most `slots` objects."""
         layouts = self._layouts(rooms)
         for count in (r.n_target for r in rooms if r.n_target is not None):
             if not 0 <= count <= self.slots:
@@ -101,18 +104,24 @@ class Sampler:
             for start in range(0, len(rooms), self.settings.batch):
                 part = range(start, min(start + self.settings.batch, len(rooms)))
                 padded = [*part, *[part[0]] * (FEW - len(part))]
-                features = torch.from_numpy(np.stack([room_features(floors[i], rooms[i].height) for i in padded]))
                 told = [rooms[i].n_target if self.settings.quantity else None for i in padded]
                 asks = [
                     Ask.of(n, rooms[i].category_bounds, classes, self.slots, rooms[i].company) for n, i in zip(told, padded, strict=True)
                 ]
                 uniform = np.stack([seeds.generator(self.seed, "inventory", *keys[i]).random((DRAWS, len(classes))) for i in padded])
                 kinds = torch.tensor([layouts[i] for i in padded])
-                room_counts += draw_inventories(self.inventory, features, kinds, asks, uniform)[: len(part)]
+                room_counts += draw_inventories(
+                    self.inventory, torch.from_numpy(np.stack([features[i] for i in padded])), kinds, asks, uniform
+                )[: len(part)]
         return [np.repeat(np.arange(len(classes)), counts) for counts in room_counts]
 
     def arrange(
-        self, rooms: Sequence[RoomContext], keys: Sequence[Key], inventories: Sequence[Ints], floors: Sequence[Floor]
+        self,
+        rooms: Sequence[RoomContext],
+        keys: Sequence[Key],
+        inventories: Sequence[Ints],
+        floors: Sequence[Floor],
+        features: Sequence[Singles],
     ) -> list[tuple[float, list[Proposal]]]:
         """Arrange what rooms hold: `inventories` are class indices (n,) per room. Returns how deep the worst overlap of each is [m], and proposals in that order."""
         arranged: list[tuple[float, list[Proposal]]] = [(0.0, []) for _ in rooms]
@@ -124,7 +133,7 @@ class Sampler:
                 for row, i in enumerate(part):
                     classes[row, : len(inventories[i])] = inventories[i]
                 own = [keys[i] for i in part]
-                poses = self._poses(torch.from_numpy(classes), [floors[i] for i in part], conditioning, own)
+                poses = self._poses(torch.from_numpy(classes), [features[i] for i in part], conditioning.layout, own)
                 labels, poses = (v.to(self.net.codec.mean.device) for v in (torch.from_numpy(classes), poses))
                 clean, depths = self._batch(conditioning, labels, poses, own, [rooms[i].taste for i in part])
                 for i, x0, mine, depth in zip(part, clean, labels, depths.tolist(), strict=True):
@@ -138,13 +147,12 @@ class Sampler:
         for start in range(0, len(filled), self.settings.batch):
             yield filled[start : start + self.settings.batch]
 
-    def _poses(self, classes: Tensor, floors: Sequence[Floor], rooms: RoomBatch, keys: Sequence[Key]) -> Tensor:
+    def _poses(self, classes: Tensor, features: Sequence[Singles], layouts: Tensor, keys: Sequence[Key]) -> Tensor:
         """Draw how the objects of rooms stand, pose classes (batch, slots); few rooms are filled up with copies, for their bits not to hang on their number."""
         rows = [*range(len(keys)), *[0] * (FEW - len(keys))]
-        features = np.stack([room_features(floor, height) for floor, height in zip(floors, rooms.height.tolist(), strict=True)])
         uniform = np.stack([seeds.generator(self.seed, "poses", *key).random(MOST_SLOTS) for key in keys])
         padded = nn.functional.pad(classes, (0, MOST_SLOTS - classes.shape[1]), value=len(self.header.norm.classes))[rows]
-        drawn = draw_poses(self.inventory.poses, torch.from_numpy(features[rows]), rooms.layout[rows], padded, uniform[rows])
+        drawn = draw_poses(self.inventory.poses, torch.from_numpy(np.stack(features)[rows]), layouts[rows], padded, uniform[rows])
         return drawn[: len(keys), : classes.shape[1]]
 
     def _batch(self, rooms: RoomBatch, classes: Tensor, poses: Tensor, keys: Sequence[Key], tastes: Sequence[Any]) -> tuple[Tensor, Floats]:
