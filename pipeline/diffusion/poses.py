@@ -15,14 +15,13 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from pipeline.relations.arrangement import Arrangement
-from pipeline.relations.walls import AROUND, measure
+from pipeline.relations.walls import AROUND, STRAIGHT, measure
 from pipeline.tensors import advance, cosine, generator
 
 POSES = ("untold", "free", "turned", "back", "corner", "side")
 UNTOLD, FREE, TURNED, BACK, CORNER, SIDE = range(len(POSES))
 CHECK, PATIENCE = 25, 12  # steps between looks at the rooms that are held out, and looks without a gain after which training stops
 AT_WALL = 0.1  # a side that is this near to a wall stands at it [m]
-STRAIGHT = np.radians(2.5)  # what is turned by less stands straight
 
 
 def pose_classes(room: Arrangement) -> NDArray[np.int64]:

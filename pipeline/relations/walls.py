@@ -6,6 +6,7 @@ from pipeline.arrays import Floats
 from pipeline.relations.arrangement import Arrangement
 
 AROUND = ("front", "right", "back", "left")
+STRAIGHT = np.radians(2.5)  # a turn to the walls that no training room has: what is turned by less stands straight
 OBLIQUE = 0.35  # a side does not face a wall that is turned from it by more than this [rad]
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from pipeline.arrays import Floats
 from pipeline.geometry.compiled import compiled
+from pipeline.relations.walls import STRAIGHT
 
 REACH = 0.12  # a side so near to a wall stands at it [m]
 BEYOND = 0.1  # past its ends a wall goes on for what is beside it [m]
@@ -11,7 +12,6 @@ OVERLAP = 0.05  # a wall that is beside no more than this of a side does not bea
 CLEAR = 0.002  # of what is put before a wall [m]
 SHALLOW = 0.15  # what reaches deeper into another is meant to, or a matter for the arranger [m]
 SQUARE = 0.05  # boxes turned to each other by less than this, or by so much more than quarters, are square [rad]
-ASKEW = np.radians(2.5)  # a turn to the walls that no training room has: of what is turned by less, the sampler meant none
 ROUNDS = 8  # over all pairs: who is moved may meet the next
 
 
@@ -77,12 +77,12 @@ def _pull_out(position: Floats, axes: Floats, size: Floats, polygon: Floats) -> 
 
 
 def straightened(yaws: Floats, polygon: Floats) -> Floats:
-    """Return yaws (n,), those along or across a wall of `polygon` (k, 2) that differ from its direction by less than ASKEW."""
+    """Return yaws (n,), those along or across a wall of `polygon` (k, 2) that differ from its direction by less than STRAIGHT."""
     along = np.roll(polygon, -1, axis=0) - polygon
     off = np.asarray(yaws)[:, None] - np.arctan2(along[:, 1], along[:, 0])
     off = np.mod(off + np.pi / 4, np.pi / 2) - np.pi / 4
     least = off[np.arange(len(off)), np.abs(off).argmin(1)]
-    return np.asarray(yaws - np.where(np.abs(least) < ASKEW, least, 0.0))
+    return np.asarray(yaws - np.where(np.abs(least) < STRAIGHT, least, 0.0))
 
 
 def part(centres: Floats, yaws: Floats, sizes: Floats, polygon: Floats) -> Floats:

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from pipeline.retrieval.wall_alignment import ASKEW, CLEAR, part, put_before_walls, straightened
+from pipeline.relations.walls import STRAIGHT
+from pipeline.retrieval.wall_alignment import CLEAR, part, put_before_walls, straightened
 
 ROOM = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
 SIZE = np.array([1.0, 0.6, 0.9])
@@ -51,7 +52,7 @@ def test_what_reaches_deep_or_stands_askew_or_apart_or_above_stays():
 def test_what_is_hardly_turned_stands_straight_and_what_is_turned_stays_so():
     askew = np.array([[0.0, 0.0], [4.0, 1.0], [3.2, 4.2], [-0.8, 3.2]])  # no wall along an axis
     wall = np.arctan2(1.0, 4.0)
-    little, much = ASKEW * 0.9, ASKEW * 1.1
+    little, much = STRAIGHT * 0.9, STRAIGHT * 1.1
     asked = wall + np.array([little, -little, np.pi / 2 + little, np.pi - little, much, -much])
     straight = wall + np.array([0.0, 0.0, np.pi / 2, np.pi, much, -much])
     np.testing.assert_allclose(straightened(asked, askew), straight, atol=1e-12)
