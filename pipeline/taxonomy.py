@@ -27,7 +27,7 @@ class RoomType:
     `area` [m2] between inner wall faces, `width` [m] the least clear width, `exterior` whether it needs an outside wall, `window` whether it
     gets windows where it has one, `habitable` whether daylight matters (energy terms 6 and 7), `useful` whether its area counts as useful
     (term 9), `through` whether one may walk through it to another room, `square` whether a square shape is wanted (term 3).
-    `furnished_as` is the layout type, "": it stays empty; `functions` what it serves as where that may be several things; `unwanted` what it has not, though others furnished so have,
+    `furnished_as` is the layout type, "": it stays empty; `roles` the layout types by whose room it is, where that is another; `functions` what it serves as where that may be several things; `unwanted` what it has not, though others furnished so have,
     and `usual` what it has oftener than they.
     `entered_from` are the types that it is entered from where nobody says, the usual one first, () for any hub; what `belongs` is entered from what it lies next to.
     `floor` and `wall` are names of manifests/materials.yaml. `called`: what people and other datasets call it besides.
@@ -42,6 +42,7 @@ class RoomType:
     through: bool = False
     square: bool = True
     furnished_as: str = ""
+    roles: Mapping[str, str] = field(default_factory=dict)
     functions: tuple[str, ...] = ()
     unwanted: tuple[str, ...] = ()
     usual: tuple[Usual, ...] = ()

@@ -94,9 +94,10 @@ def layout_type(room: Room, plan: Plan, taxonomy: Taxonomy) -> str | None:
     """Return the room type that the layout model knows this room as, or None when it stays empty; "bedroom+living_room" for one that serves as both."""
     if room.type not in taxonomy.types:
         return room.type if room.type in taxonomy.layouts else None
-    own = taxonomy.types[room.type].functions
+    kind = taxonomy.types[room.type]
+    own = kind.functions
     if not own:
-        return room.type if room.type in taxonomy.layouts else taxonomy.types[room.type].furnished_as or None
+        return kind.roles.get(room.role) or (room.type if room.type in taxonomy.layouts else kind.furnished_as or None)
     functions = {*own, *room.functions, *(["dining"] if _dines(room, plan, taxonomy) else [])}
     if {"living", "dining"} <= functions and "sleeping" not in functions:  # no part of a studio is as large as rooms that are both
         functions = functions - {"living", "dining"} | {"living and dining"}

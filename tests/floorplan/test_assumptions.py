@@ -53,3 +53,17 @@ def test_the_terminal_shows_it(tmp_path, capsys):
     assert "assumed" in shown
     assert "usual x 0.8" in shown
     assert "bath (bathroom)" in shown
+
+
+@pytest.mark.parametrize(
+    ("roles", "largest"), [(("child", ""), 1), (("", "child"), 0), (("guest", "child", "primary"), 2), (("child", "guest"), None)]
+)
+def test_the_largest_bedroom_is_theirs_whose_home_it_is(roles, largest):
+    beds = tuple(RoomReq(id=f"b{k}", type="bedroom", role=role) for k, role in enumerate(roles))
+    program = complete(FloorProgram(rooms=(*beds, RoomReq(id="l", type="living_room"), RoomReq(id="k", type="bathroom"))))
+    target = {r.id: r.area.target for r in program.rooms}
+    areas = [target[b.id] for b in beds]
+    if largest is None:
+        assert len(set(areas)) == 1
+    else:
+        assert areas[largest] > max(a for k, a in enumerate(areas) if k != largest)

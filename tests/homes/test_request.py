@@ -1,4 +1,6 @@
-"""Where one dines: where somebody said so, else in the room that has the floor for it; and what a room of several uses is furnished as."""
+"""Where one dines: where somebody said so, else in the room that has the floor for it; what a room of several uses, and one that is somebody's, is furnished as."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -37,3 +39,9 @@ def room(name, kind, area, functions=()):
 def test_where_one_dines(rooms, expected):
     plan = Plan(tuple(rooms), (), "a")
     assert [layout_type(r, plan, taxonomy.load()) for r in rooms] == expected
+
+
+@pytest.mark.parametrize(("role", "kind"), [("child", "kids_room"), ("primary", "bedroom"), ("guest", "bedroom"), ("", "bedroom")])
+def test_a_bedroom_is_furnished_for_whom_it_is(role, kind):
+    own = replace(room("a", "bedroom", 12), role=role)
+    assert layout_type(own, Plan((own,), (), "a"), taxonomy.load()) == kind

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from pipeline.floorplan.program.defaults import DEFAULTS, EATIN_KITCHEN, LIVING_DINING, OUTSIDE, PRIMARY_BEDROOM
-from pipeline.floorplan.program.floor_program import FloorProgram, Range, RoomReq
+from pipeline.floorplan.program.floor_program import OTHERS, FloorProgram, Range, RoomReq
 
 HALL_SHARE, HALL_LEAST = 0.08, 4.0
 HALL_PER_DOOR = 1.0  # m2: doors on both sides of a corridor 1.1 m wide, one every 1.8 m
@@ -50,7 +50,7 @@ def _default(room: RoomReq, rooms: Sequence[RoomReq]) -> float:
     if room.type == "bedroom":
         beds = [r for r in rooms if r.type == "bedroom"]
         named = [r for r in beds if r.role == "primary"]
-        if room in named or (not named and len(beds) > 1 and room is beds[0]):
+        if room in named or (not named and len(beds) > 1 and room is next((r for r in beds if r.role not in OTHERS), None)):
             return PRIMARY_BEDROOM
         return (PRIMARY_BEDROOM + DEFAULTS["bedroom"].area) / 2 if len(beds) == 1 else DEFAULTS["bedroom"].area
     if room.type == "kitchen" and "dining" in room.functions:

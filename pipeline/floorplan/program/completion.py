@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pipeline.floorplan.program.areas import with_areas
 from pipeline.floorplan.program.consistency import check_names, check_storeys, reach
 from pipeline.floorplan.program.defaults import INTO
-from pipeline.floorplan.program.floor_program import Entrance, FloorProgram, RoomReq, RoomType, Shell
+from pipeline.floorplan.program.floor_program import OTHERS, Entrance, FloorProgram, RoomReq, RoomType, Shell
 from pipeline.floorplan.program.furniture import allot_pieces, matching_categories, spread
 from pipeline.floorplan.program.links import connect, distances, is_forbidden, nearness, resolve
 
@@ -95,7 +95,7 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
 
     if not program.only and not work:
         roles = {r.role for r in rooms if r.type == "bedroom"}
-        of_others = len(roles) == 1 and roles < {"child", "guest", "elder", "carer", "staff"}  # than those whose home it is
+        of_others = len(roles) == 1 and roles < OTHERS
         if of_others and "studio_room" not in types:
             types.discard("bedroom")
             add("bedroom", "bed")

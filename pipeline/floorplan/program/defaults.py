@@ -3,7 +3,7 @@
 from pipeline import taxonomy
 
 DEFAULTS = taxonomy.load().types
-PRIMARY_BEDROOM = 16.0  # the first of several bedrooms, or one that is called main, master or primary
+PRIMARY_BEDROOM = 16.0  # the first of several bedrooms that is not a child's or a guest's, or one that is called main, master or primary
 EATIN_KITCHEN = 16.0
 LIVING_DINING = 24.0  # a living room of a home in which one dines nowhere else
 OUTSIDE = frozenset({"balcony", "garage"})  # not part of the total area

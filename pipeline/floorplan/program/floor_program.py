@@ -16,6 +16,7 @@ else:  # of manifests/rooms.yaml and manifests/styles.yaml
     RoomType = Literal[tuple(taxonomy.load().types)]
     FurnitureStyle = Literal[tuple(name for name in style.load().styles if name != "Others")]
 Role = Literal["", "primary", "guest", "child", "elder", "staff", "carer", "shared"]
+OTHERS = frozenset({"child", "guest", "elder", "carer", "staff"})  # who sleeps in a home beside those whose home it is
 LinkKind = Literal["door", "open", "portal", "any", "wall"]
 Slug = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
 Selector = Annotated[
