@@ -65,13 +65,15 @@ def tally(house: House, scene: Json, reference: Reference) -> HouseTally:
         items = [i for i in house.items if i.room == number and reference.counted(i.model.category)]
         polygon = Polygon(room.polygon)
         shapes = [Polygon(i.corners()) for i in items]
-        house_tally.rooms.append(_room(room.type, polygon, items, shapes))
         for item, shape in zip(items, shapes, strict=True):
             objects += 1
             outside += not polygon.covers(shape) and shape.intersection(polygon).area < 0.95 * shape.area
             oblique += abs(math.sin(2 * item.yaw)) > 0.035
-        count, together = _overlaps(items, shapes)
-        overlapping, pairs = overlapping + count, pairs + together
+        standing = [s for i, s in zip(items, shapes, strict=True) if i.position[2] < STANDING]
+        house_tally.rooms.append(_room(room.type, polygon, items, standing))
+        for one, other in itertools.combinations(standing, 2):
+            pairs += 1
+            overlapping += one.intersection(other).area > 0.01 * min(one.area, other.area)
         relate(items, house_tally.relations)
     house_tally.shares = _defects(scene) | {
         "outside": (outside, objects),
@@ -82,22 +84,13 @@ def tally(house: House, scene: Json, reference: Reference) -> HouseTally:
     return house_tally
 
 
-def _room(room_type: str, polygon: Polygon, items: Sequence[Item], shapes: Sequence[Polygon]) -> RoomTally:
+def _room(room_type: str, polygon: Polygon, items: Sequence[Item], standing: Sequence[Polygon]) -> RoomTally:
     x0, y0, x1, y1 = polygon.bounds
-    share = None
-    if len(items) >= 3:
-        standing = [s for i, s in zip(items, shapes, strict=True) if i.position[2] < STANDING]
-        share = 1.0 - unary_union(standing).intersection(polygon).area / polygon.area if standing else 1.0
+    share = 1.0 - unary_union(standing).intersection(polygon).area / polygon.area if len(items) >= 3 else None
     mirrored = any(min(i.scale) < 0 for i in items)
     categories = tuple(i.model.category for i in items)
     rectangular = polygon.area > 0.99 * (x1 - x0) * (y1 - y0)
     return RoomTally(room_type.lower(), float(polygon.area), rectangular, max(x1 - x0, y1 - y0), categories, mirrored, share)
-
-
-def _overlaps(items: Sequence[Item], shapes: Sequence[Polygon]) -> tuple[int, int]:
-    """Return how many pairs of things on the floor overlap by more than 1 % of the smaller, and how many pairs there are."""
-    pairs = list(itertools.combinations([s for i, s in zip(items, shapes, strict=True) if i.position[2] < STANDING], 2))
-    return sum(one.intersection(other).area > 0.01 * min(one.area, other.area) for one, other in pairs), len(pairs)
 
 
 def local(frame: Item, item: Item) -> tuple[float, float]:

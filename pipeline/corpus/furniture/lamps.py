@@ -46,7 +46,15 @@ def shade(
     cover = covers.get(kind, "shade_cloth")
     if cover == "shade_cloth" and rng.random() < 0.3:
         cover = Finish("shade_linen", tint(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
-    return pieces("shade", _walls(kind, profile, at, n), cover) + _fittings(radius, profile[-1][0], z, at, metal)
+    parts, top, high, tall = pieces("shade", _walls(kind, profile, at, n), cover), profile[-1][0], z[1], z[1] - z[0]
+    if top > 0.05:  # spokes carry it
+        middle = np.array([*at, high - 0.03 * tall - 0.004])
+        spokes = [rod(middle - s * np.array(polar(top - 0.5 * WALL, 0.3, 0)), middle, 0.0025, n=5) for s in (-1, 1)]
+        parts += pieces("spider", spokes, metal)
+    if tall > 0.16 and radius > 0.06:
+        parts += pieces("socket", revolve([(0.014, high - 0.45 * tall), (0.014, high - 0.02 * tall)], 8, at), metal)
+        parts += bulb(high - 0.45 * tall - 0.07, 0.07, at)
+    return parts
 
 
 def _ball(finishes: Finishes, kind: str, radius: float, z: Interval, at: Spot, n: int) -> Pieces:
@@ -76,21 +84,6 @@ def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
             grow = np.where(np.arange(8) < 4, r0, r1) / (0.5 * (r0 + r1))
             walls.append(Solid(stave.vertices * np.column_stack([grow, grow, np.ones(8)]), stave.faces).translate((*at, 0.0)))
     return walls
-
-
-def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Material) -> Pieces:
-    """Build the spokes that carry an open shade whose upper rim has radius `top`, its socket and its bulb, where there is room for them."""
-    low, high = z
-    tall = high - low
-    parts: Pieces = ()
-    if top > 0.05:
-        middle = np.array([*at, high - 0.03 * tall - 0.004])
-        spokes = [rod(middle - s * np.array(polar(top - 0.5 * WALL, 0.3, 0)), middle, 0.0025, n=5) for s in (-1, 1)]
-        parts += pieces("spider", spokes, metal)
-    if tall > 0.16 and radius > 0.06:
-        parts += pieces("socket", revolve([(0.014, high - 0.45 * tall), (0.014, high - 0.02 * tall)], 8, at), metal)
-        parts += bulb(high - 0.45 * tall - 0.07, 0.07, at)
-    return parts
 
 
 def _lantern(finishes: Finishes, radius: float, z: Interval) -> Pieces:
@@ -133,35 +126,26 @@ def turn_along_y(shape: Shape) -> Shape:
 
 def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a shade on a pole or on three legs, or globes on a stem."""
-    r = w / 2
+    r, metal = w / 2, finishes.handle
     if form == "globes":
         return Shape(_stem_of_globes(rng, w, d, h, finishes))
     kind = shade_word(rng, finishes, "globe cage lantern paper crystal mushroom cylinder")
     tall = min(0.26 * h, 0.95 * w)
-    parts = shade(rng, finishes, kind, r, (h - tall, h))
-    return Shape(parts + (_tripod(rng, w, d, h, tall, finishes) if form == "tripod" else _pole(rng, w, d, h, tall, finishes)))
-
-
-def _tripod(rng: np.random.Generator, w: float, d: float, h: float, tall: float, finishes: Finishes) -> Pieces:
-    """Build three legs, the hub on them, sometimes a shelf between them; the shade above is `tall`."""
-    r, metal = w / 2, finishes.handle
-    top = h - tall
-    ends = [polar(0.95 * r, a) for a in turns(3, math.pi / 2)]
-    parts = pieces("legs", [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends], finishes.timber)
-    if rng.random() < 0.5:
-        parts += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), finishes.timber)
-    hub = revolve([(0.05, top - 0.035), (0.05, top - 0.02), (0.012, top - 0.012), (0.008, top + 0.3 * tall)], 14)
-    return parts + pieces("hub", hub, metal)
-
-
-def _pole(rng: np.random.Generator, w: float, d: float, h: float, tall: float, finishes: Finishes) -> Pieces:
-    """Build a round foot with a pole under a shade that is `tall`, turned where the style likes ornament."""
-    r, metal = w / 2, finishes.handle
+    parts, top = shade(rng, finishes, kind, r, (h - tall, h)), h - tall
+    if form == "tripod":  # its hub carries the shade, sometimes there is a shelf between its legs
+        ends = [polar(0.95 * r, a) for a in turns(3, math.pi / 2)]
+        legs = [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends]
+        parts += pieces("legs", legs, finishes.timber)
+        if rng.random() < 0.5:
+            parts += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), finishes.timber)
+        hub = revolve([(0.05, top - 0.035), (0.05, top - 0.02), (0.012, top - 0.012), (0.008, top + 0.3 * tall)], 14)
+        return Shape(parts + pieces("hub", hub, metal))
     if finishes.style.ornament > 0.5:
         steps = [(0.6 * r, 0.0), (0.6 * r, 0.03), (0.05, 0.05), (0.02, 0.12), (0.032, 0.3), (0.016, 0.36 * h), (0.03, 0.42 * h)]
-        steps += [(0.016, 0.46 * h), (0.02, 0.6 * h), (0.01, h - tall), (0.008, h - 0.7 * tall)]
-        return pieces("pole", revolve(steps, 16), finishes.timber if rng.random() < 0.5 else metal)
-    return pieces("pole", revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20), metal)
+        steps += [(0.016, 0.46 * h), (0.02, 0.6 * h), (0.01, top), (0.008, h - 0.7 * tall)]
+        return Shape(parts + pieces("pole", revolve(steps, 16), finishes.timber if rng.random() < 0.5 else metal))
+    pole = revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20)
+    return Shape(parts + pieces("pole", pole, metal))
 
 
 def _stem_of_globes(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:

@@ -114,20 +114,8 @@ def _palm(rng: np.random.Generator, g: Growth) -> Pieces:
     return g.parts("stems", g.green, 0.022 + 0.02 * g.small, belly=0.35, n=4)
 
 
-def _big_leaf(g: Growth, base: Points, direction: float, droop: float, size: float) -> None:
-    """Add one large split leaf: a fan of lobes about its midrib."""
-    u = np.array(polar(1.0, direction, 0.0))
-    side = np.array([-u[1], u[0], 0.0])
-    fall = np.array([0, 0, -droop])
-    for share, spread, reach in ((0.0, 0.9, 0.55), (0.22, 0.8, 0.62), (0.44, 0.66, 0.56), (0.62, 0.45, 0.46)):
-        p = base + size * share * (u + 0.4 * fall)
-        for q in (-1, 1):
-            g.leaf(p, p + size * reach * (q * side * spread + u * (0.45 + 0.3 * share) + fall * (0.45 + share)))
-    g.leaf(base + size * 0.5 * (u + 0.4 * fall), base + size * (1.08 * u + 1.0 * fall))
-
-
 def _monstera(rng: np.random.Generator, g: Growth) -> Pieces:
-    """Long stalks, each with one large leaf split into lobes."""
+    """Long stalks, each with one large leaf split into lobes: a fan of them about its midrib."""
     count, size = 9, 0.62 * g.small
     for k in range(count):
         a, out = k * GOLDEN, math.sqrt((k + 0.5) / count)
@@ -135,7 +123,13 @@ def _monstera(rng: np.random.Generator, g: Growth) -> Pieces:
         end = np.array([*((g.half - 0.8 * size) * out * polar(1.0, a)), z])
         path = curve([g.root(a, 0.3), np.array([*(0.35 * end[:2]), 0.6 * z + 0.4 * g.crown]), end], 2)
         g.stems += tube(path, np.linspace(0.008, 0.004, len(path)), 6)
-        _big_leaf(g, end, a, 0.35 + 0.3 * out, size)
+        u = np.array(polar(1.0, a, 0.0))
+        side, fall = np.array([-u[1], u[0], 0.0]), np.array([0, 0, -(0.35 + 0.3 * out)])
+        for share, spread, reach in ((0.0, 0.9, 0.55), (0.22, 0.8, 0.62), (0.44, 0.66, 0.56), (0.62, 0.45, 0.46)):
+            p = end + size * share * (u + 0.4 * fall)
+            for q in (-1, 1):
+                g.leaf(p, p + size * reach * (q * side * spread + u * (0.45 + 0.3 * share) + fall * (0.45 + share)))
+        g.leaf(end + size * 0.5 * (u + 0.4 * fall), end + size * (1.08 * u + 1.0 * fall))
     return g.parts("stems", g.green, 0.3 * size)
 
 

@@ -223,28 +223,23 @@ def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     apron = [box(around(x - 0.02), around(0.006, t * y), (seat - 0.09, under), 0.002) for t in (-1, 1)]
     apron += [box(around(0.006, s * x), around(y - 0.02), (seat - 0.08, under), 0.002) for s in (-1, 1)]
     parts += pieces("apron", apron, wood)
-    upper, top = _yoke(form, x, y, seat, seat + (0.5 if form != "rose" else 0.62) * (h - seat), h)
-    splat = box((-0.085, 0.085), around(0.007, y), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
-    parts += pieces("frame", upper, wood) + pieces("splat", splat, wood)
-    if rng.random() < 0.55:
-        cord = finishes.second if rng.random() < 0.4 else None
-        parts += seat_cushion(around(0.84 * x), (-0.86 * y, 0.8 * y), (seat + 0.0005, seat + 0.045), 0.02, finishes.soft, cord, 0.008)
-    return Shape(parts)
-
-
-def _yoke(form: str, x: float, y: float, seat: float, arm: float, h: float) -> tuple[list[Solid], float]:
-    """Build the posts, arms and top rail of an official's hat chair or a rose chair; returns them with the height of the posts."""
-    r = 0.0145
+    r, arm = 0.0145, seat + (0.5 if form != "rose" else 0.62) * (h - seat)
     top = h - 0.045 if form == "official" else h - 2 * r
     upper = [rod((s * x, y, seat), (s * x, y, top), 0.016, 0.014, 10) for s in (-1, 1)]
     upper += [rod((s * x, -y, seat), (s * x, -y, arm - r), 0.015, n=8) for s in (-1, 1)]
     upper += [rod((s * x, -y - 0.03, arm), (s * x, y - 0.016, arm + 0.015), r, n=8) for s in (-1, 1)]
     if form == "official":
         bow = ((-x - 0.03, 0.04), (-0.5 * x, 0.028), (0, 0.02), (0.5 * x, 0.028), (x + 0.03, 0.04))
-        return upper + tube(curve([(px, y, h - drop) for px, drop in bow], 2), 0.017, 8), top
-    upper += [rod((-x, y, h - r), (x, y, h - r), r, n=8)]
-    upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
-    return upper, top
+        upper += tube(curve([(px, y, h - drop) for px, drop in bow], 2), 0.017, 8)
+    else:
+        upper.append(rod((-x, y, h - r), (x, y, h - r), r, n=8))
+        upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
+    splat = box((-0.085, 0.085), around(0.007, y), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
+    parts += pieces("frame", upper, wood) + pieces("splat", splat, wood)
+    if rng.random() < 0.55:
+        cord = finishes.second if rng.random() < 0.4 else None
+        parts += seat_cushion(around(0.84 * x), (-0.86 * y, 0.8 * y), (seat + 0.0005, seat + 0.045), 0.02, finishes.soft, cord, 0.008)
+    return Shape(parts)
 
 
 def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:

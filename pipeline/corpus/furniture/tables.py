@@ -10,7 +10,7 @@ from pipeline.corpus.furniture.bent import arc, lathe, prism, turns, wall
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case, grid
 from pipeline.corpus.furniture.finishes import Finish, Finishes, cane
 from pipeline.corpus.furniture.fronts import Rect, frame
-from pipeline.corpus.furniture.intervals import Interval, Spot, around, polar, split
+from pipeline.corpus.furniture.intervals import Interval, around, polar, split
 from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs, pedestal
 from pipeline.corpus.furniture.shape import Pieces, Shape, join_shapes, pieces, translate
 from pipeline.corpus.furniture.solids import Solid, beam, board, box, circle, revolve, ring, rod, rounded_rectangle, slab, stand_up
@@ -59,15 +59,11 @@ def legged_table(rng: np.random.Generator, w: float, d: float, h: float, finishe
     if not framed:
         drop = (0.075 if h > 0.6 else 0.045) + 0.02 * finishes.style.ornament
         gap = 0.5 * thick + (0.004 if kind not in ("turned", "fluted") else 0.0)
-        parts += pieces("apron", rails(half, (h - t - drop, h - t), gap), finish)
+        (x, y), z = half, (h - t - drop, h - t)
+        rails = [box(around(x - gap), around(0.01, s * y), z, 0.002) for s in (-1, 1)]
+        rails += [box(around(0.01, s * x), around(y - gap), z, 0.002) for s in (-1, 1)]
+        parts += pieces("apron", rails, finish)
     return Shape(parts)
-
-
-def rails(half: Spot, z: Interval, gap: float) -> list[Solid]:
-    """Return four rails between the tops of legs at (+-half), each `gap` short of a leg's middle."""
-    x, y = half
-    along = [box(around(x - gap), around(0.01, s * y), z, 0.002) for s in (-1, 1)]
-    return along + [box(around(0.01, s * x), around(y - gap), z, 0.002) for s in (-1, 1)]
 
 
 def dining_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -79,8 +75,11 @@ def dining_table(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     under = h - t
     if form in ("tulip", "drum"):
         parts = pieces("top", top(circle(w / 2, 36), (under, h), finishes), material)
-        if form == "drum":
-            return Shape(parts + fluted_drum(0.3 * w, under, finishes))
+        if form == "drum":  # clad in upright half-round staves
+            radius, r = 0.3 * w, math.pi * (0.3 * w) / 30
+            staves = [rod(polar(radius + 0.85 * r, a, 0.0), polar(radius + 0.85 * r, a, under), 0.95 * r, n=6) for a in turns(30)]
+            parts += pieces("drum", revolve([(radius, 0.0), (radius, under)], 24), finishes.body)
+            return Shape(parts + pieces("staves", staves, finishes.body))
         return Shape(parts + pieces("pedestal", lathe("trumpet", 0.32 * w, under, 24), finishes.front))
     parts = pieces("top", top(outline(rng, finishes, w, d), (under, h), finishes), material)
     if form == "bar":
@@ -97,13 +96,6 @@ def dining_table(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     solids = [box(around(half, s * x), around(0.4 * d), (0, under), 0.006) for s in (-1, 1)]
     solids.append(box(around(x - half), (-0.016, 0.016), (0.55 * h, under), 0.003))
     return Shape(parts + pieces("slabs", solids, finishes.body))
-
-
-def fluted_drum(radius: float, height: float, finishes: Finishes) -> Pieces:
-    """Return a round base clad in upright half-round staves."""
-    r = math.pi * radius / 30
-    staves = [rod(polar(radius + 0.85 * r, a, 0.0), polar(radius + 0.85 * r, a, height), 0.95 * r, n=6) for a in turns(30)]
-    return pieces("drum", revolve([(radius, 0.0), (radius, height)], 24), finishes.body) + pieces("staves", staves, finishes.body)
 
 
 def _bar(w: float, d: float, h: float, t: float, finishes: Finishes) -> Pieces:

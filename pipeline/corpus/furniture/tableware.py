@@ -74,11 +74,8 @@ def vase(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
     base = pieces("vase", revolve(curve(lower, 3).tolist(), n), finish)
     for (r0, z0), (r1, z1) in itertools.pairwise(upper):
         base += pieces("neck", ring((r0, r1), (0.78 * r0, 0.78 * r1), (z0, z1), n), finish)
-    return Shape(base + _twigs(rng, w, d, h, tall) if form == "twigs" else base)
-
-
-def _twigs(rng: np.random.Generator, w: float, d: float, h: float, tall: float) -> Pieces:
-    """Return twigs with leaves that stand in a vase, `tall` [m]."""
+    if form != "twigs":
+        return Shape(base)
     stems: list[Solid] = []
     roots, tips = [], []
     count = int(rng.integers(4, 7))
@@ -93,7 +90,7 @@ def _twigs(rng: np.random.Generator, w: float, d: float, h: float, tall: float) 
             tips += [p + polar(0.05, a + side * 0.9, 0.02) for side in (-1, 1)]
     color = FINISHES["leaf"].color if rng.random() < 0.6 else (0.40, 0.26, 0.10)
     green = Finish("dry_leaf", tint(rng, color, 0.25), 0.7, pattern="leaf", density=300)
-    return pieces("stems", stems, "twig") + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green)
+    return Shape(base + pieces("stems", stems, "twig") + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green))
 
 
 def binding(rng: np.random.Generator) -> Finish:

@@ -125,20 +125,14 @@ def curtain(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
     share = float(rng.uniform(0.16, 0.24)) if form == "drawn" else 0.5
     for s in (-1, 1):
         outer, inner = s * (w / 2 - 0.07), s * (w / 2 - 0.07 - share * (w - 0.14) + (0.002 if form != "drawn" else 0.0))
-        parts += _panel(outer, inner, d, rod_z - 0.03, cloth)
+        folds = max(3, round(abs(inner - outer) / 0.11))  # the deeper, the more the panel is drawn aside
+        t = np.linspace(0, 1, 4 * folds + 1)
+        path = np.column_stack([outer + (inner - outer) * t, (0.5 * d - 0.004) * np.sin(2 * math.pi * folds * t)])
+        parts += pieces("cloth", wall(path, 0.006, 0.0, rod_z - 0.03), cloth)
     if form == "drawn":
         return Shape(parts)
     sheer = replace(cloth, name="sheer", color=(0.80, 0.79, 0.76), pattern="weave", second=None)
     return Shape(tuple(replace(p, finish=sheer) if p.finish is cloth else p for p in parts))
-
-
-def _panel(start: float, end: float, d: float, h: float, cloth: Material) -> Pieces:
-    """Return one pleated panel between two x [m], deeper folds the more it is drawn aside."""
-    wide = abs(end - start)
-    folds = max(3, round(wide / 0.11))
-    t = np.linspace(0, 1, 4 * folds + 1)
-    path = np.column_stack([start + (end - start) * t, (0.5 * d - 0.004) * np.sin(2 * math.pi * folds * t)])
-    return pieces("cloth", wall(path, 0.006, 0.0, h), cloth)
 
 
 def cushion_pillow(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:

@@ -27,33 +27,19 @@ def furnish_bedroom(arranger: Arranger) -> None:
     pieces = arranger.wishes("pieces")
     if bed is not None and "tv_stand" in pieces:
         tv_opposite(arranger, bed)
-    at_walls(arranger, [p for p in pieces if p != "tv_stand"])
-    if bed is not None and arranger.wants("bench"):
-        bed_end_stool(arranger, bed)
-    extras(arranger)
-    if arranger.wants("wall_lamp"):
-        arranger.on_wall("wall_lamp", 1.5)
-    arranger.light([(bed[1].x, bed[1].y)] if bed is not None and arranger.wants("lamp_over_bed") else [])
-
-
-def at_walls(arranger: Arranger, pieces: list[str]) -> None:
-    """Put desks with their chairs and other large pieces to the walls, in either order."""
-    if arranger.chance(0.5):
-        pieces.reverse()
-    for piece in pieces:
+    others = [p for p in pieces if p != "tv_stand"]
+    for piece in others[::-1] if arranger.chance(0.5) else others:
         if piece in {"desk", "dressing_table"}:
             arranger.pair_at_wall(piece)
         else:
             arranger.at_wall(piece, corner=0.8, tries=6)
-
-
-def extras(arranger: Arranger) -> None:
-    """Put the smaller pieces that the room wants: seats into corners, the others to walls."""
+    if bed is not None and arranger.wants("bench"):
+        bed_end_stool(arranger, bed)
     for category in arranger.wishes("extras"):
-        if category in SEATS:
-            arranger.in_corner(category)
-        else:
-            arranger.at_wall(category)
+        (arranger.in_corner if category in SEATS else arranger.at_wall)(category)
+    if arranger.wants("wall_lamp"):
+        arranger.on_wall("wall_lamp", 1.5)
+    arranger.light([(bed[1].x, bed[1].y)] if bed is not None and arranger.wants("lamp_over_bed") else [])
 
 
 def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
