@@ -249,10 +249,18 @@ def drawer(
     z1 = min(z0 + max(0.04, 0.74 * (cz1 - cz0)), cz1 - 0.008)
     wall = min(BOARD, 0.1 * (x1 - x0))
     boards = tray((x0, x1), (y0, y1), (z0, z1), wall)
-    grips, at = _drawer_grips(rect, style)
-    travel = round(0.82 * (y1 - y0), 3)
+    middle = rect.middle[0]
+    height = rect.middle[1] if rect.height < 0.3 else rect.z[1] - 0.08
+    if rect.width > 0.75 and style.handle in ("knob", "ring", "cup"):  # two on a wide front
+        spots = (("handle", middle - rect.width / 4), ("handle_2", middle + rect.width / 4))
+        grips = tuple(p for n, x in spots for p in handle(style, rect, upright=False, at=(x, height), length=0.1, name=n))
+    else:
+        share, most = (0.7, 0.9) if style.handle == "long" else (0.38, 0.40)
+        length = min(most, max(0.08, share * rect.width), 0.8 * rect.width)
+        grips = handle(style, rect, upright=False, at=(middle, height), length=length)
+    at = (middle, rect.y, rect.z[1] - LIP if style.handle == "groove" else height)
     parts = panel(rect, style) + pieces("drawer_box", boards, inside) + grips
-    return Mover(name, parts, "prismatic", (0, -1, 0), at, travel, "slider_drawer", "drawer", after=after)
+    return Mover(name, parts, "prismatic", (0, -1, 0), at, round(0.82 * (y1 - y0), 3), "slider_drawer", "drawer", after=after)
 
 
 def tray(x: Interval, y: Interval, z: Interval, wall: float) -> list[Solid]:
@@ -260,20 +268,6 @@ def tray(x: Interval, y: Interval, z: Interval, wall: float) -> list[Solid]:
     low = z[0] + 0.008
     sides = [box(span, y, (low, z[1])) for span in ((x[0], x[0] + wall), (x[1] - wall, x[1]))]
     return [box(x, y, (z[0], low)), *sides, box(inset(x, wall), (y[1] - wall, y[1]), (low, z[1]))]
-
-
-def _drawer_grips(rect: Rect, style: FrontStyle) -> tuple[Pieces, Axis3]:
-    """Return one handle in the middle, or two on a wide front, and where a hand takes hold."""
-    middle = rect.middle[0]
-    height = rect.middle[1] if rect.height < 0.3 else rect.z[1] - 0.08
-    at = (middle, rect.y, rect.z[1] - LIP if style.handle == "groove" else height)
-    if rect.width > 0.75 and style.handle in ("knob", "ring", "cup"):
-        quarter = rect.width / 4
-        grips = handle(style, rect, upright=False, at=(middle - quarter, height), length=0.1)
-        return grips + handle(style, rect, upright=False, at=(middle + quarter, height), length=0.1, name="handle_2"), at
-    share = 0.7 if style.handle == "long" else 0.38
-    length = min(0.9 if style.handle == "long" else 0.40, max(0.08, share * rect.width))
-    return handle(style, rect, upright=False, at=(middle, height), length=min(length, 0.8 * rect.width)), at
 
 
 def lid(name: str, parts: Pieces, hinge: tuple[float, float, float], upper: float, parent: str = "base") -> Mover:

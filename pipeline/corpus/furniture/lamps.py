@@ -197,7 +197,7 @@ def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float
     metal = finishes.handle
     r = w / 2
     if form == "desk":
-        return turn_along_y(table_lamp(rng, form, d, w, h, finishes)) if d > w else Shape(_desk_lamp(rng, w, d, h, finishes))
+        return turn_along_y(_desk_lamp(rng, d, w, h, finishes)) if d > w else _desk_lamp(rng, w, d, h, finishes)
     if form == "mushroom":
         foot = revolve([(0.5 * r, 0.0), (0.42 * r, 0.1 * h), (0.34 * r, 0.45 * h), (0.4 * r, 0.6 * h)], 20)
         bend = curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2)
@@ -218,7 +218,7 @@ def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float
     return Shape(pieces("foot", revolve(profile, 20), finish) + shade(rng, finishes, kind, r, (stem, h)))
 
 
-def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Shape:
     """Build a round foot, an arm with an elbow and a cone at its end, along x."""
     q = min(0.5 * d, 0.34 * w)
     x0, tip = -w / 2 + q, w / 2 - 0.28 * d
@@ -227,4 +227,4 @@ def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, finishes:
     arm = [rod((x0, 0, 0.022), (x, 0, z - 0.012), 0.007, n=8), rod((x + 0.01, 0, z + 0.003), (tip, 0.0, h - 0.02), 0.007, n=8)]
     arm.append(rod((x, -0.014, z), (x, 0.014, z), 0.012, n=10))
     head = shade(rng, finishes, "cone", 0.28 * d, (h - 0.02 - 0.42 * d, h - 0.02), (tip, 0.0), 16)
-    return pieces("foot", foot, finishes.handle) + pieces("arm", arm, finishes.handle) + head
+    return Shape(pieces("foot", foot, finishes.handle) + pieces("arm", arm, finishes.handle) + head)

@@ -37,20 +37,15 @@ class Frame:
         return box(around(self.x - inset), around(half, self.y), (self.low + a * rise, self.low + b * rise), 0.003)
 
 
-def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
-    """Return the two posts that rise from the seat."""
-    t, xs = frame.thick, [s * (frame.x - frame.thick / 2) for s in (-1, 1)]
-    ends = [((x, frame.y, frame.low), (x, frame.y, frame.high)) for x in xs]
-    return [rod(*span, 0.5 * t, 0.4 * t, 8) if turned else beam(*span, 0.86 * t, 0.86 * t, 1.15) for span in ends]
-
-
 def back(rng: np.random.Generator, kind: str, frame: Frame, finishes: Finishes) -> Pieces:
     """Return a back of one kind: slat, ladder, panel, splat, spindle, cane, cross, pad."""
     t, rise = frame.thick, frame.high - frame.low
     if kind == "pad":
         pad = upright_pad(rng, finishes, around(frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * rise, frame.high))
         return pieces("back_pad", lean(pad, frame.low, frame.slope), finishes.soft)
-    wood = posts(frame, turned=kind in ("spindle", "ladder") and finishes.style.ornament > 0.3)
+    ends = [((x, frame.y, frame.low), (x, frame.y, frame.high)) for x in around(frame.x - t / 2)]
+    turned = kind in ("spindle", "ladder") and finishes.style.ornament > 0.3
+    wood = [rod(*span, 0.5 * t, 0.4 * t, 8) if turned else beam(*span, 0.86 * t, 0.86 * t, 1.15) for span in ends]
     wood.append(frame.bar(0.86, 1.0, t))
     if kind in RAILS:
         wood += [frame.bar(low, high, t, deep) for low, high, deep in RAILS[kind]]

@@ -175,8 +175,11 @@ def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
     side = arm if form == "track" else 0.012
     parts += pieces("frame", cushion(around(w / 2 - side), (front + 0.03, d / 2 - 0.008), (lift, base_top), 0.018, 2), finishes.soft)
     inner = around(w / 2 - arm)
-    if form == "u_shape":
-        parts += _returns(w, d, front, lift, base_top, seat, arm, finishes)
+    for lo, hi in edges(inner, min(0.75, 0.28 * w)) if front > -d / 2 else ():  # seats that come forward at both ends
+        end = cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, base_top), 0.018, 2)
+        parts += pieces("frame_end", end, finishes.soft)
+        span = inset((lo, hi), 0.003)
+        parts += seat_cushion(span, (-d / 2, front - 0.003), (base_top, seat + 0.022), 0.05, finishes.soft, None, 0.025)
     top = min(h - 0.04, seat + 0.2) if form != "chesterfield" else h - 0.08
     rolled = form in ("roll", "chesterfield", "camelback")
     face = d / 2 - 0.62 * deep
@@ -268,18 +271,6 @@ def _pillows(rng: np.random.Generator, x: float, y: float, z: Interval, finishes
         size = min(float(rng.uniform(0.38, 0.46)), z[1] - z[0])
         pillows.append(throw_pillow((s * (x - 0.27), y - 0.12, z[0]), size, 0.32, -0.25 * s))
     return pieces("pillows", pillows, finishes.second)
-
-
-def _returns(w: float, d: float, front: float, lift: float, top: float, seat: float, arm: float, finishes: Finishes) -> Pieces:
-    """Return the seats that come forward at both ends of a sofa in the shape of a U."""
-    if front <= -d / 2:
-        return ()
-    parts: Pieces = ()
-    for lo, hi in edges(around(w / 2 - arm), min(0.75, 0.28 * w)):
-        frame = cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, top), 0.018, 2)
-        parts += pieces("frame_end", frame, finishes.soft)
-        parts += seat_cushion(inset((lo, hi), 0.003), (-d / 2, front - 0.003), (top, seat + 0.022), 0.05, finishes.soft, None, 0.025)
-    return parts
 
 
 def _frame_sofa(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:

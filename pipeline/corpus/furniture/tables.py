@@ -187,24 +187,18 @@ def desk(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
         table = legged_table(rng, w, d, work, finishes, without="block bun horse")
         panel = box(around(0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05))
         shape = Shape(table.base + pieces("modesty", panel, finishes.body))
-    if h - work > 0.1:
-        shape = join_shapes(shape, Shape(_hutch(w, d, (work, h), finishes)))
-    return shape
-
-
-def _hutch(w: float, d: float, z: Interval, finishes: Finishes) -> Pieces:
-    """Return a shelf that stands at the back of a desk, over heights `z`."""
-    depth, t = min(0.24, 0.4 * d), 0.018
-    y, top, height = (d / 2 - depth, d / 2), z[1] - t, z[1] - z[0]
+    if h - work <= 0.1:
+        return shape
+    y, t = (d / 2 - min(0.24, 0.4 * d), d / 2), 0.018
     spans = split((-w / 2 + 0.01, w / 2 - 0.01 - t), max(1, round(w / 0.7)))
-    sides = [box((x, x + t), y, (z[0], top)) for x in (*(a for a, _ in spans), spans[-1][1])]
-    parts = pieces("hutch_sides", sides, finishes.body)
-    parts += pieces("hutch_top", box(around(w / 2 - 0.01), y, (top, z[1]), 0.002), finishes.body)
-    middle = z[0] + 0.55 * height
-    if height > 0.3:
-        boards = [box((a + t, b), (y[0] + 0.01, y[1]), (middle, middle + 0.016)) for a, b in spans]
-        parts += pieces("hutch_boards", boards, finishes.body)
-    return parts
+    sides = [box((x, x + t), y, (work, h - t)) for x in (*(a for a, _ in spans), spans[-1][1])]
+    hutch = pieces("hutch_sides", sides, finishes.body)
+    hutch += pieces("hutch_top", box(around(w / 2 - 0.01), y, (h - t, h), 0.002), finishes.body)
+    if h - work > 0.3:
+        z = work + 0.55 * (h - work)
+        boards = [box((a + t, b), (y[0] + 0.01, y[1]), (z, z + 0.016)) for a, b in spans]
+        hutch += pieces("hutch_boards", boards, finishes.body)
+    return join_shapes(shape, Shape(hutch))
 
 
 def _pedestal_desk(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Shape:

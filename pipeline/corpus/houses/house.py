@@ -75,21 +75,14 @@ def tidy(space: Space) -> None:
         standing = [k for k, i in enumerate(space.items) if i.position[2] < 1.0]
         if not standing:
             break
-        victim = far[-1] if far else _culprit(space, standing)
-        space.items.pop(victim)
+        items, scores = space.items, []
+        for k in reversed(standing) if not far else ():  # whose removal joins the most doors; the latest of equals
+            space.items = items[:k] + items[k + 1 :]
+            scores.append((problems(space)[0], -k))
+        space.items = items
+        items.pop(far[-1] if far else -min(scores)[1])
     walls = sum(low < -1.0 for _, low, _ in space.solids)
     space.solids[walls:] = [(i.rect(), i.position[2], i.position[2] + i.size[2]) for i in space.items]
-
-
-def _culprit(space: Space, standing: list[int]) -> int:
-    """Return the item whose removal joins the most doors; the latest of equals."""
-    items = space.items
-    scores = []
-    for k in reversed(standing):
-        space.items = items[:k] + items[k + 1 :]
-        scores.append((problems(space)[0], -k))
-    space.items = items
-    return -min(scores)[1]
 
 
 def make_house(seed: int, index: int, stock: Stock) -> House:

@@ -145,7 +145,10 @@ def _block(seed: int, block: int) -> tuple[Agenda, ...]:
     rng = generator(seed, "agenda", block)
     weights: Mapping[str, float] = rates.load()["agenda"]
     names, shares = list(weights), np.array(list(weights.values()))
-    drawn = [_rooms(rng, names, shares, n) for n in _numbers(rng)]
+    houses = np.array(front_statistics.load().furnished_rooms, float)  # by their number of furnished rooms: the observed shares, evenly
+    marks = (np.arange(BLOCK) + rng.random()) / BLOCK
+    numbers = rng.permutation(np.searchsorted(np.cumsum(houses) / houses.sum(), marks))
+    drawn = [_rooms(rng, names, shares, int(n) + 1) for n in numbers]
     typed = _living(rng, drawn)
     totals = Counter(KINDS[t] for rooms in typed for t in rooms)
     counts: Counter[str] = Counter()
@@ -154,14 +157,6 @@ def _block(seed: int, block: int) -> tuple[Agenda, ...]:
         agendas.append(Agenda(block, rooms, {kind: (counts[kind], total) for kind, total in totals.items()}))
         counts.update(KINDS[t] for t in rooms)
     return tuple(agendas)
-
-
-def _numbers(rng: np.random.Generator) -> list[int]:
-    """Return how many rooms each house of a block furnishes: the observed shares, evenly."""
-    houses = np.array(front_statistics.load().furnished_rooms, float)
-    edges = np.cumsum(houses) / houses.sum()
-    marks = (np.arange(BLOCK) + rng.random()) / BLOCK
-    return [int(n) + 1 for n in rng.permutation(np.searchsorted(edges, marks))]
 
 
 def chances(shares: NDArray[np.float64], number: int) -> NDArray[np.float64]:

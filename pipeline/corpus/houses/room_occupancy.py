@@ -27,6 +27,8 @@ CELL = 0.1
 WAY = 0.3  # half the width that people leave for the ways through their rooms [m]
 FILLER = 0.035  # beside what opens, and behind a lid that falls back: a door that stands open needs it for its handle [m]
 LIDS = frozenset({"trash_can"})
+Solid = tuple[Rect, float, float]
+"""What stands or hangs: its rectangle, from one height to another [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,9 +120,9 @@ class Space:
         self.area = room.area
         self.bounds: Rect = (*(float(v) for v in room.polygon.min(axis=0)), *(float(v) for v in room.polygon.max(axis=0)))  # type: ignore[assignment]
         self.sides = sides_of(room)
-        self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects([(side.x, side.y) for side in self.sides])]
+        self.solids: list[Solid] = [(r, -FAR, FAR) for r in outside_rects([(side.x, side.y) for side in self.sides])]
         self.clearances: list[Rect] = []
-        self.swept: list[tuple[Rect, float, float]] = []
+        self.swept: list[Solid] = []
         self.gaps: list[tuple[Rect, float]] = []
         self.panes: list[tuple[Rect, float]] = []
         self.doors: list[tuple[float, float]] = []
