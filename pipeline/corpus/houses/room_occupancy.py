@@ -48,8 +48,7 @@ class Side:
 
     def strip(self, low: float, high: float, near: float, far: float) -> Rect:
         """Return the rectangle from `low` to `high` along the wall and from `near` to `far` in front of it [m]."""
-        xs = [self.x + s * self.tx - v * self.ty for s in (low, high) for v in (near, far)]
-        ys = [self.y + s * self.ty + v * self.tx for s in (low, high) for v in (near, far)]
+        xs, ys = zip(*(self.point(s, v) for s in (low, high) for v in (near, far)), strict=True)
         return (min(xs), min(ys), max(xs), max(ys))
 
     def along(self, box: Rect) -> tuple[float, float]:
