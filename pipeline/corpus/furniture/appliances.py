@@ -174,10 +174,8 @@ def microwave(rng: np.random.Generator, form: str, w: float, d: float, h: float,
 
 
 def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a round door in front of a drum, a detergent drawer, a dial and buttons; or a lid over a drum that stands."""
+    """Build a round door in front of a drum, a detergent drawer, a dial and buttons."""
     outside = "enamel" if rng.random() < 0.65 else "graphite"
-    if form == "top":
-        return _top_loader(w, d, h, outside)
     t, face = 0.02, -d / 2 + 0.045  # plane of the front panel
     x, panel = around(w / 2), h - 0.135
     r, zc = 0.34 * w, 0.5 * (panel + 0.1)
@@ -205,8 +203,9 @@ def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: 
     return Shape(base, tuple(movers))
 
 
-def _top_loader(w: float, d: float, h: float, outside: Material) -> Shape:
-    """Return a machine filled from above: a lid over an upright drum, dials on a panel at the back."""
+def top_loader(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+    """Build a washing machine filled from above: a lid over an upright drum, dials on a panel at the back."""
+    outside = "enamel" if rng.random() < 0.65 else "graphite"
     x, y, t = around(w / 2), around(d / 2), 0.018
     deck, back = h - 0.16, y[1] - 0.12
     inner = inset(x, t)

@@ -20,12 +20,7 @@ SHARES = {  # height of a shade in its widths
 
 
 def pendant_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a shade or globe on a cord, a bar over a table, a cluster, a chandelier, a lantern, a sputnik, or a cage."""
-    if form == "linear" and d > w:  # built along x, turned to the longer side
-        return turn_along_y(pendant_lamp(rng, form, d, w, h, finishes))
-    build = {"linear": _linear, "cluster": _cluster, "chandelier": _chandelier, "sputnik": _sputnik}.get(form)
-    if build:
-        return Shape(build(rng, w, d, h, finishes))
+    """Build a shade, a globe, a lantern or a cage on a cord."""
     kind = form if form in ("globe", "lantern", "cage") else shade_word(rng, finishes, "globe lantern cage crystal paper")
     tall = min(0.66 * h, SHARES.get(kind, 0.6) * w)
     return Shape(shade(rng, finishes, kind, w / 2, (0.0, tall)) + _suspension(tall - 0.002, h, finishes))
@@ -37,7 +32,10 @@ def _suspension(z: float, h: float, finishes: Finishes) -> Pieces:
     return pieces("cord", cord, finishes.handle) + pieces("rose", rose, finishes.handle)
 
 
-def _linear(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def linear_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a row of shades under a bar over a table, or one long beam of light; along the longer side."""
+    if d > w:
+        return turn_along_y(linear_lamp(rng, form, d, w, h, finishes))
     metal = finishes.handle
     parts = pieces("rose", box(around(0.3 * w), (-0.035, 0.035), (h - 0.024, h), 0.004), metal)
     if rng.random() < 0.35:  # one long beam of light
@@ -60,7 +58,8 @@ def _linear(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fi
     return parts
 
 
-def _cluster(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def cluster_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build shades that hang at several heights from one rose."""
     count = int(rng.integers(3, 7))
     r = 0.2 * min(w, d) if min(w, d) > 0.3 else 0.34 * min(w, d)
     squash = min(1.0, d / w)
@@ -75,7 +74,7 @@ def _cluster(rng: np.random.Generator, w: float, d: float, h: float, finishes: F
     return parts
 
 
-def _chandelier(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def chandelier(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Arms that swing out and up from a turned stem, each with a small shade or a candle, drops of glass below."""
     metal = finishes.handle
     r, body = w / 2, min(0.62 * h, 0.8 * w)
@@ -97,7 +96,7 @@ def _chandelier(rng: np.random.Generator, w: float, d: float, h: float, finishes
     return parts + _suspension(body - 0.002, h, finishes)
 
 
-def _sputnik(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def sputnik_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Rods in all directions from a ball, a lit globe on each."""
     count, r = 12, 0.09 * min(w, d)
     middle = np.array([0, 0, min(0.66 * h, 0.9 * min(w, d)) / 2])
@@ -116,14 +115,12 @@ def _sputnik(rng: np.random.Generator, w: float, d: float, h: float, finishes: F
 
 
 def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a disc, a square panel, a ring, a rain of crystal, a lattice frame or a row of spots; tall ones hang in tiers."""
+    """Build a disc, a square panel, a ring, a rain of crystal, or a lattice frame; tall ones hang in tiers."""
     metal, squash = finishes.handle, d / w
-    if form == "crystal" or (h > 0.3 and form != "spots"):
+    if form == "crystal" or h > 0.3:
         return Shape(_rain(form, w, d, h, finishes))
     if form == "frame":
         return Shape(_lattice(w, d, h, finishes))
-    if form == "spots":
-        return Shape(_spots(rng, w, d, h, finishes))
     if form == "ring":
         parts = pieces("ring", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32, squash=squash), "glow")
         parts += pieces("hoop", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0.4 * h, 0.6 * h), 32, squash=squash), metal)
@@ -140,7 +137,7 @@ def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     return Shape(pieces("mount", mount, finish) + pieces("diffuser", diffuser, "glow"))
 
 
-def _spots(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def spots(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bar with a row of spots that look down, each a little another way."""
     metal = finishes.handle
     parts = pieces("bar", box(around(w / 2), (-0.03, 0.03), (h - 0.03, h), 0.003), metal)

@@ -119,16 +119,14 @@ def _cage(finishes: Finishes, radius: float, z: Interval) -> Pieces:
     return parts + bulb(high - 0.12 * tall - 0.5 * tall, 0.5 * tall, (0.0, 0.0))
 
 
-def turn_along_y(shape: Shape) -> Shape:
+def turn_along_y(parts: Pieces) -> Pieces:
     """Return what was built along x along y."""
-    return Shape(tuple(replace(p, solid=p.solid.rotate("z", math.pi / 2)) for p in shape.base))
+    return tuple(replace(p, solid=p.solid.rotate("z", math.pi / 2)) for p in parts)
 
 
 def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a shade on a pole or on three legs, or globes on a stem."""
+    """Build a shade on a pole or on three legs."""
     r, metal = w / 2, finishes.handle
-    if form == "globes":
-        return Shape(_stem_of_globes(rng, w, d, h, finishes))
     kind = shade_word(rng, finishes, "globe cage lantern paper crystal mushroom cylinder")
     tall = min(0.26 * h, 0.95 * w)
     parts, top = shade(rng, finishes, kind, r, (h - tall, h)), h - tall
@@ -148,7 +146,7 @@ def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float
     return Shape(parts + pieces("pole", pole, metal))
 
 
-def _stem_of_globes(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def stem_of_globes(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build three lit globes on arms around a stem."""
     r, metal = w / 2, finishes.handle
     parts = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
@@ -193,11 +191,9 @@ def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float,
 
 
 def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a shade on a foot of pottery, turned wood or metal, a globe, a mushroom, or a desk lamp with a jointed arm."""
+    """Build a shade on a foot of pottery, turned wood or metal, a globe, or a mushroom."""
     metal = finishes.handle
     r = w / 2
-    if form == "desk":
-        return turn_along_y(_desk_lamp(rng, d, w, h, finishes)) if d > w else _desk_lamp(rng, w, d, h, finishes)
     if form == "mushroom":
         foot = revolve([(0.5 * r, 0.0), (0.42 * r, 0.1 * h), (0.34 * r, 0.45 * h), (0.4 * r, 0.6 * h)], 20)
         bend = curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2)
@@ -218,8 +214,10 @@ def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float
     return Shape(pieces("foot", revolve(profile, 20), finish) + shade(rng, finishes, kind, r, (stem, h)))
 
 
-def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a round foot, an arm with an elbow and a cone at its end, along x."""
+def desk_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a round foot, an arm with an elbow and a cone at its end, along the longer side."""
+    if d > w:
+        return turn_along_y(desk_lamp(rng, form, d, w, h, finishes))
     q = min(0.5 * d, 0.34 * w)
     x0, tip = -w / 2 + q, w / 2 - 0.28 * d
     foot = revolve([(q, 0.0), (q, 0.014), (0.2 * q, 0.022)], 20, (x0, 0.0))
@@ -227,4 +225,4 @@ def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, finishes:
     arm = [rod((x0, 0, 0.022), (x, 0, z - 0.012), 0.007, n=8), rod((x + 0.01, 0, z + 0.003), (tip, 0.0, h - 0.02), 0.007, n=8)]
     arm.append(rod((x, -0.014, z), (x, 0.014, z), 0.012, n=10))
     head = shade(rng, finishes, "cone", 0.28 * d, (h - 0.02 - 0.42 * d, h - 0.02), (tip, 0.0), 16)
-    return Shape(pieces("foot", foot, finishes.handle) + pieces("arm", arm, finishes.handle) + head)
+    return pieces("foot", foot, finishes.handle) + pieces("arm", arm, finishes.handle) + head

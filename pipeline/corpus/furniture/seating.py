@@ -94,13 +94,8 @@ def _cross(frame: Frame) -> list[Solid]:
     return bars
 
 
-def dining_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a chair: framed (wood, upholstered, spindle, cafe), a shell, a wishbone, or a cantilever."""
-    build = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever}.get(form)
-    return Shape(build(rng, w, d, h, finishes) if build else _frame_chair(rng, form, w, d, h, finishes))
-
-
-def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def dining_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a chair of four legs and a back: of wood, upholstered, with spindles, or of a cafe."""
     seat = min(0.47, 0.56 * h)
     x, y = w / 2, d / 2
     thick = 0.034 * finishes.style.slim
@@ -140,7 +135,7 @@ def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     return parts
 
 
-def _shell_chair(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def shell_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bent shell of plywood, plastic or cloth on four legs, a wire base, or a swivel foot."""
     seat, x, y = min(0.46, 0.55 * h), w / 2, d / 2
     soft = rng.random() < 0.45
@@ -167,7 +162,7 @@ def _shell_chair(rng: np.random.Generator, w: float, d: float, h: float, finishe
     return parts + pieces("legs", feet, finish) + pieces("plate", plate, finishes.handle)
 
 
-def _wishbone(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def wishbone_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round crest that becomes the arms, on posts, with a forked splat and a woven seat."""
     seat, x, y, wood = min(0.45, 0.55 * h), w / 2, d / 2, finishes.timber
     r = 0.016
@@ -189,7 +184,7 @@ def _wishbone(rng: np.random.Generator, w: float, d: float, h: float, finishes: 
     return parts + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), "cord")
 
 
-def _cantilever(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def cantilever_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Bent steel from the floor over the front up to the seat and the back, with cane, leather or cloth between."""
     seat, x, y = min(0.46, 0.56 * h), w / 2 - TUBE, d / 2
     side = [(y - 0.03, TUBE), (-y + 0.06, TUBE), (-y + TUBE, 0.06), (-y + TUBE, seat - 0.08), (-y + 0.06, seat - 0.02)]

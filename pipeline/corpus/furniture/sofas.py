@@ -17,13 +17,8 @@ LIFTS = {"track": 0.05, "legs": 0.15, "roll": 0.09, "chesterfield": 0.1, "camelb
 REST = (1.2, 1.45, 1.5, 1.4, 1.2)  # widths along a wooden arm, in those of its post
 
 
-def lounge_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build an easy chair in a wooden frame, an office chair, a wing chair, a recliner's shell, a tub or a cane chair."""
-    build = {"easy": _easy, "office": _office, "wing": _wing, "lounger": _lounger, "tub": _tub, "rattan": _rattan}[form]
-    return Shape(build(rng, w, d, h, finishes))
-
-
-def _easy(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def easy_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a low chair with loose cushions in an open frame of wood."""
     seat, x, y = min(0.42, 0.48 * h), w / 2, d / 2
     arm = seat + 0.18
     t = 0.032 * finishes.style.slim
@@ -48,7 +43,8 @@ def _easy(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fini
     return parts + pieces("laths", lean(laths, seat - 0.1, slope), wood)
 
 
-def _wing(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def wing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a chair with wings beside its high back, and rolled arms."""
     seat, x, y = min(0.44, 0.46 * h), w / 2, d / 2
     kind = draw_kind(rng, finishes, "plank cross sled hairpin pipe blade horse")
     low, cloth = 0.17, finishes.soft
@@ -69,7 +65,8 @@ def _wing(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fini
     return parts
 
 
-def _office(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def office_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a chair that turns on a star of five castors."""
     seat, r = min(0.5, 0.52 * h), 0.46 * min(w, d)
     base: list[Solid] = []
     wheels: list[Solid] = []
@@ -98,7 +95,7 @@ def _office(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fi
     return parts + pieces("arms", arms, "plastic")
 
 
-def _lounger(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def lounger(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Bent plywood shells with thick leather pads on a star foot."""
     seat, x, y = min(0.4, 0.46 * h), w / 2, d / 2
     wood, rise = finishes.timber, h - seat
@@ -119,7 +116,7 @@ def _lounger(rng: np.random.Generator, w: float, d: float, h: float, finishes: F
     return parts + pieces("foot", star + column, finishes.handle)
 
 
-def _tub(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def tub_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round seat inside a wall that wraps it, sewn in channels or plain."""
     seat, x, y = min(0.43, 0.52 * h), w / 2, d / 2
     low = 0.13
@@ -142,7 +139,8 @@ def _tub(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finis
     return parts + pieces("seat", stack(rings), finishes.soft if rng.random() < 0.7 else finishes.second)
 
 
-def _rattan(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def rattan_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a chair of poles and woven cane, its back and arms one hoop."""
     """Build a round back of cane in a bent frame, a cushion on a woven seat."""
     seat, x, y = min(0.4, 0.5 * h), w / 2, d / 2
     pole = Finish("rattan_pole", tint(rng, (0.42, 0.25, 0.10)), 0.6, pattern="grain", density=450)
@@ -160,11 +158,7 @@ def _rattan(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fi
 
 
 def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a sofa: square, slim or rolled arms, a buttoned Chesterfield, a camel's back, a wooden frame, a low cloud, or curved ends."""
-    if form == "tub":
-        return lounge_chair(rng, "tub", w, d, h, finishes)
-    if form == "frame":
-        return Shape(_frame_sofa(rng, w, d, h, finishes))
+    """Build a sofa: square, slim or rolled arms, a buttoned Chesterfield, a camel's back, a low cloud, or curved ends."""
     seats = max(1, round((w - 0.4) / (0.72 if form != "cloud" else 0.95)))
     seat = float(rng.uniform(0.40, 0.44)) * min(1.0, h / 0.78) * (0.92 if form == "cloud" else 1.0)
     arm, lift = ARMS[form] * min(1.0, w / 0.85), LIFTS[form]
@@ -273,7 +267,7 @@ def _pillows(rng: np.random.Generator, x: float, y: float, z: Interval, finishes
     return pieces("pillows", pillows, finishes.second)
 
 
-def _frame_sofa(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def frame_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Loose cushions in an open frame of wood with laths behind them."""
     x, y = w / 2, d / 2
     seat = 0.42 * min(1.0, h / 0.78)

@@ -225,10 +225,8 @@ def _swing_bin(x: Interval, y: Interval, h: float, finish: Material, hood: Mater
 
 
 def storage_box(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a box: a hinged lid with a latch strip, four flaps of cardboard, or a lid that slides off."""
+    """Build a box: a hinged lid with a latch strip, or a lid that slides off."""
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
-    if form == "flaps":
-        return _carton(w, d, h)
     finish = finishes.body if form == "slide" or rng.random() < 0.5 else Finish("box_lacquer", finishes.front.color, 0.5, density=600)
     t = 0.009
     if form == "slide":
@@ -252,8 +250,8 @@ def storage_box(rng: np.random.Generator, form: str, w: float, d: float, h: floa
     return Shape(base, (lid("lid", lid_parts, (0.0, y[1], low + 0.002), math.radians(100)),))
 
 
-def _carton(w: float, d: float, h: float) -> Shape:
-    """Return a carton: two long flaps meet over two short ones, which wait for them."""
+def carton(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+    """Build a carton: two long flaps meet over two short ones, which wait for them."""
     x, y, t = (-w / 2, w / 2), (-d / 2, d / 2), 0.008
     low = h - 2 * t - 0.003
     base = pieces("walls", tray_walls(x, y, (0.0, low), t), "cardboard")
