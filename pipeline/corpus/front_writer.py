@@ -88,7 +88,9 @@ class SceneFile:
         uv: list[float] = []
         faces: list[int] = []
         for k, quad in enumerate(surface.quads):
-            n = GARBAGE_NORMAL if surface.type == "Floor" and self.dialect == "0.4" else _normal(quad)
+            a, b, c = np.array(quad[:3])
+            nx, ny, nz = np.cross(b - a, c - a) / np.linalg.norm(np.cross(b - a, c - a))
+            n = [round(nx), round(nz), round(-ny)] if surface.type != "Floor" or self.dialect != "0.4" else GARBAGE_NORMAL
             xyz += [c for x, y, z in quad for c in (round(x, 5), round(z, 5), round(0.0 - y, 5))]
             normal += 4 * n
             width, height = round(math.dist(quad[0], quad[1]), 3), round(math.dist(quad[1], quad[2]), 3)
@@ -241,14 +243,6 @@ def quaternion(yaw: float) -> list[float]:
 
 def _identity() -> Json:
     return {"pos": [0, 0, 0], "rot": [0, 0, 0, 1], "scale": [1, 1, 1]}
-
-
-def _normal(quad: shell.Quad) -> list[float]:
-    """Return the unit normal of a quad in 3D-FRONT's frame."""
-    a, b, c = np.array(quad[:3])
-    x, y, z = np.cross(b - a, c - a)
-    length = math.hypot(x, y, z)
-    return [round(x / length), round(z / length), round(-y / length)]
 
 
 def _r(value: float) -> float:
