@@ -8,7 +8,7 @@ from pipeline.corpus.furniture.bent import curve, lathe, tube, turns
 from pipeline.corpus.furniture.finishes import Finishes, pick
 from pipeline.corpus.furniture.intervals import around, polar
 from pipeline.corpus.furniture.lamps import bulb, shade, shade_word, turn_along_y
-from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, ring, rod, slab
 
 THIN = 0.0035  # radius of a cord
@@ -19,11 +19,11 @@ SHARES = {  # height of a shade in its widths
 }  # fmt: skip
 
 
-def pendant_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def pendant_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a shade, a globe, a lantern or a cage on a cord."""
     kind = form if form in ("globe", "lantern", "cage") else shade_word(rng, finishes, "globe lantern cage crystal paper")
     tall = min(0.66 * h, SHARES.get(kind, 0.6) * w)
-    return Shape(shade(rng, finishes, kind, w / 2, (0.0, tall)) + _suspension(tall - 0.002, h, finishes))
+    return shade(rng, finishes, kind, w / 2, (0.0, tall)) + _suspension(tall - 0.002, h, finishes)
 
 
 def _suspension(z: float, h: float, finishes: Finishes) -> Pieces:
@@ -114,18 +114,18 @@ def sputnik_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     return parts + _suspension(z + 0.8 * r, h, finishes)
 
 
-def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a disc, a square panel, a ring, a rain of crystal, or a lattice frame; tall ones hang in tiers."""
     metal, squash = finishes.handle, d / w
     if form == "crystal" or h > 0.3:
-        return Shape(_rain(form, w, d, h, finishes))
+        return _rain(form, w, d, h, finishes)
     if form == "frame":
-        return Shape(_lattice(w, d, h, finishes))
+        return _lattice(w, d, h, finishes)
     if form == "ring":
         parts = pieces("ring", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32, squash=squash), "glow")
         parts += pieces("hoop", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0.4 * h, 0.6 * h), 32, squash=squash), metal)
         bars = [box(around(0.42 * w), (-0.012, 0.012), (0.6 * h, 0.72 * h)), box((-0.012, 0.012), around(0.42 * d), (0.72 * h, 0.84 * h))]
-        return Shape(parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
+        return parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal)
     finish = metal if rng.random() < 0.6 else finishes.timber
     if form == "disc":
         top = h - min(0.4 * h, 0.05)
@@ -134,7 +134,7 @@ def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     else:
         mount = [box(around(w / 2), around(d / 2), (0.45 * h, h), 0.004)]
         diffuser = [cushion(around(0.47 * w), around(0.47 * d), (0, 0.45 * h), min(0.03, 0.2 * h), 2)]
-    return Shape(pieces("mount", mount, finish) + pieces("diffuser", diffuser, "glow"))
+    return pieces("mount", mount, finish) + pieces("diffuser", diffuser, "glow")
 
 
 def spots(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:

@@ -14,7 +14,7 @@ from pipeline.corpus.furniture.catalogue import series_rng
 from pipeline.corpus.furniture.finishes import COLORS, Finish, Finishes, Material, draw_material, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, lid, panel, reach, top_button
 from pipeline.corpus.furniture.intervals import Interval, around, between, edges, inset
-from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Shape, group_pieces, join_shapes, pieces, staves
+from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, group_pieces, join_shapes, pieces, staves
 from pipeline.corpus.furniture.solids import at_height, box, circle, cushion, revolve, ring, rod, rounded_rectangle, shell, slab, stack
 from pipeline.corpus.furniture.storage import front_style
 
@@ -205,7 +205,7 @@ def _along(u: NDArray[np.float64], a: float, b: float, power: float) -> NDArray[
     return np.asarray(u * reach[:, None])
 
 
-def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a tub with aprons, or one that stands free on its oval foot; a tap at its head."""
     a, b, low = w / 2, d / 2, 0.14
     rim = h if form == "free" else h - 0.12
@@ -224,10 +224,10 @@ def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
         spout = [rod((x, 0, rim), (x, 0, h - 0.01), 0.014, n=10), rod((x, 0, h - 0.018), (x - 0.13, 0, h - 0.03), 0.012, n=10)]
         spout += [rod((x, s * 0.09, rim), (x, s * 0.09, rim + 0.05), 0.016, 0.02, 10) for s in (-1, 1)]
         base += pieces("tap", spout, finishes.handle)
-    return Shape(base)
+    return base
 
 
-def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a tray with two glass walls, an open entrance at the front, a rail with a head and a mixer at the back wall."""
     tray, metal = 0.06, finishes.handle
     x, y, back = around(w / 2), around(d / 2), d / 2 - 0.05
@@ -244,7 +244,7 @@ def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     pole += revolve([(0.11, h - 0.055), (0.11, h - 0.045), (0.03, h - 0.022)], 20, (0.0, d / 2 - 0.33))
     base += pieces("posts", posts, metal) + pieces("rail", pole, metal)
     base += pieces("mixer", box((-0.13, 0.13), (back, d / 2), (1.02, 1.07), 0.008), metal)
-    return Shape(base + pieces("drain", ring((0.045, 0.045), (0.03, 0.03), (tray - 0.02, tray - 0.017), 16), "steel"))
+    return base + pieces("drain", ring((0.045, 0.045), (0.03, 0.03), (tray - 0.02, tray - 0.017), 16), "steel")
 
 
 def room_door(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:

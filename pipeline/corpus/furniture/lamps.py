@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import curve, tube, turns, wall
 from pipeline.corpus.furniture.finishes import PROFILES, Finish, Finishes, Material, cane, one_of, tint
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
-from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, stand_up
 
 WALL = 0.006
@@ -124,7 +124,7 @@ def turn_along_y(parts: Pieces) -> Pieces:
     return tuple(replace(p, solid=p.solid.rotate("z", math.pi / 2)) for p in parts)
 
 
-def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a shade on a pole or on three legs."""
     r, metal = w / 2, finishes.handle
     kind = shade_word(rng, finishes, "globe cage lantern paper crystal mushroom cylinder")
@@ -137,13 +137,13 @@ def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float
         if rng.random() < 0.5:
             parts += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), finishes.timber)
         hub = revolve([(0.05, top - 0.035), (0.05, top - 0.02), (0.012, top - 0.012), (0.008, top + 0.3 * tall)], 14)
-        return Shape(parts + pieces("hub", hub, metal))
+        return parts + pieces("hub", hub, metal)
     if finishes.style.ornament > 0.5:
         steps = [(0.6 * r, 0.0), (0.6 * r, 0.03), (0.05, 0.05), (0.02, 0.12), (0.032, 0.3), (0.016, 0.36 * h), (0.03, 0.42 * h)]
         steps += [(0.016, 0.46 * h), (0.02, 0.6 * h), (0.01, top), (0.008, h - 0.7 * tall)]
-        return Shape(parts + pieces("pole", revolve(steps, 16), finishes.timber if rng.random() < 0.5 else metal))
+        return parts + pieces("pole", revolve(steps, 16), finishes.timber if rng.random() < 0.5 else metal)
     pole = revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20)
-    return Shape(parts + pieces("pole", pole, metal))
+    return parts + pieces("pole", pole, metal)
 
 
 def stem_of_globes(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
@@ -160,7 +160,7 @@ def stem_of_globes(rng: np.random.Generator, form: str, w: float, d: float, h: f
     return parts
 
 
-def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a small shade on an arm, a lit bar, a globe on a plate, or candles on swung arms; the back is at the wall."""
     metal = finishes.handle
     back = d / 2
@@ -171,14 +171,14 @@ def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float,
         light = rod((0, y, 0.03 * h), (0, y, 0.97 * h), 0.85 * r, n=14)
         caps = [rod((0, y, z), (0, y, z + 0.03 * h), r, n=14) for z in (0.0, 0.97 * h)]
         arm = box((-0.012, 0.012), (y + 0.85 * r, back - 0.018), (0.48 * h, 0.52 * h), 0.002)
-        return Shape(pieces("plate", plate, metal) + pieces("caps", [*caps, arm], metal) + pieces("tube", light, "glow"))
+        return pieces("plate", plate, metal) + pieces("caps", [*caps, arm], metal) + pieces("tube", light, "glow")
     if form == "globe":
         r = min(w / 2, 0.42 * d)
         y = -d / 2 + r
         disc = stand_up([slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)], (0, back, 0.5 * h))
         neck = rod((0, back - 0.016, 0.5 * h), (0, y + 0.95 * r, 0.5 * h), 0.009, n=8)
         globe = shade(rng, finishes, "globe", r, around(min(r, 0.5 * h), 0.5 * h), (0.0, y), 18)
-        return Shape(pieces("plate", disc, metal) + pieces("neck", neck, metal) + globe)
+        return pieces("plate", disc, metal) + pieces("neck", neck, metal) + globe
     r = min(w / 2, 0.4 * d) if form == "shade" else min(0.24 * w, 0.4 * d)
     wide = 0.2 * w if form != "shade" or r > 0.4 * w else 0.5 * w
     parts = pieces("plate", box((-wide, wide), (back - 0.016, back), (0.0, 0.7 * h), 0.004), metal)
@@ -187,10 +187,10 @@ def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float,
         swing = curve([(0.1 * x, back - 0.016, 0.34 * h), (0.6 * x, 0.5 * (y + back), 0.22 * h), (x, y, 0.26 * h), (x, y, 0.42 * h)], 2)
         parts += pieces("arm", tube(swing, 0.0065, 6), metal)
         parts += shade(rng, finishes, "pleated" if finishes.style.ornament > 0.5 else "drum", r, (h - 0.55 * h, h), (x, y), 16)
-    return Shape(parts)
+    return parts
 
 
-def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a shade on a foot of pottery, turned wood or metal, a globe, or a mushroom."""
     metal = finishes.handle
     r = w / 2
@@ -198,11 +198,11 @@ def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float
         foot = revolve([(0.5 * r, 0.0), (0.42 * r, 0.1 * h), (0.34 * r, 0.45 * h), (0.4 * r, 0.6 * h)], 20)
         bend = curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2)
         cap = revolve(bend.tolist(), 28)
-        return Shape(pieces("stem", foot, finishes.front) + pieces("cap", cap, "glow" if rng.random() < 0.5 else finishes.front))
+        return pieces("stem", foot, finishes.front) + pieces("cap", cap, "glow" if rng.random() < 0.5 else finishes.front)
     if form == "globe":
         foot = revolve([(0.6 * r, 0.0), (0.6 * r, 0.02), (0.3 * r, 0.03), (0.2 * r, h - 1.95 * r)], 20)
         base = pieces("foot", foot, metal if rng.random() < 0.6 else finishes.stone)
-        return Shape(base + shade(rng, finishes, "globe", r, (max(0.05, h - 1.95 * r), h)))
+        return base + shade(rng, finishes, "globe", r, (max(0.05, h - 1.95 * r), h))
     tall = 0.42 * h
     stem = h - tall
     belly = curve([(0.45, 0.0), (0.5, 0.03), (0.62, 0.2), (0.5, 0.4), (0.16, 0.52)], 2).tolist()
@@ -211,7 +211,7 @@ def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float
     profile += [(0.01, min(0.54 * h, stem - 0.01)), (0.006, h - 0.45 * tall - 0.072 if tall > 0.16 else h - 0.5 * tall)]
     finish = finishes.timber if rng.random() < 0.4 else replace(finishes.front, name="pottery", roughness=0.2)
     kind = shade_word(rng, finishes, "globe cage lantern paper crystal mushroom cylinder dome")
-    return Shape(pieces("foot", revolve(profile, 20), finish) + shade(rng, finishes, kind, r, (stem, h)))
+    return pieces("foot", revolve(profile, 20), finish) + shade(rng, finishes, kind, r, (stem, h))
 
 
 def desk_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:

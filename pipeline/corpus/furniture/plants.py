@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
 from pipeline.corpus.furniture.finishes import FINISHES, PROFILES, Finish, Finishes, Material, draw_material, tint
 from pipeline.corpus.furniture.intervals import Spot, polar
-from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
 
 GOLDEN = math.pi * (3 - math.sqrt(5))
@@ -18,13 +18,13 @@ GOLDEN = math.pi * (3 - math.sqrt(5))
 Points = NDArray[np.float64]
 
 
-def plant(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def plant(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bush, a palm, a monstera, a fiddle fig, or an olive tree in a pot."""
     pot_r = min(0.3 * min(w, d), 0.2)
     pot, crown = _pot(rng, pot_r, min(0.34 * h, 0.36, 1.9 * pot_r), finishes)
     grow = {"bush": _bush, "palm": _palm, "monstera": _monstera, "fig": _fig, "olive": _olive}[form]
     green = Finish("leaf", tint(rng, FINISHES["leaf"].color, 0.28), 0.55, pattern="leaf", density=300)
-    return Shape(pot + grow(rng, Growth((w / 2, d / 2), crown, h, pot_r, green)))
+    return pot + grow(rng, Growth((w / 2, d / 2), crown, h, pot_r, green))
 
 
 def _pot(rng: np.random.Generator, r: float, h: float, finishes: Finishes) -> tuple[Pieces, float]:

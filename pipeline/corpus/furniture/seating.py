@@ -9,7 +9,7 @@ from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, prism, sheet
 from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of
 from pipeline.corpus.furniture.intervals import around, between, corners, polar, split
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, at_height, beam, board, box, circle, cushion, revolve, rod, slab, stand_up
 from pipeline.corpus.furniture.textiles import piping, seat_cushion, tufted_panel, upright_pad
 
@@ -200,7 +200,7 @@ def cantilever_chair(rng: np.random.Generator, form: str, w: float, d: float, h:
     return parts + pieces("back", lean([pad], seat + 0.02, slope), panel)
 
 
-def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build an official's hat chair with a yoke, or a rose chair with a low square back."""
     seat = min(0.5, 0.55 * h)
     x, y = 0.5 * w - 0.03, 0.5 * d - 0.03
@@ -229,10 +229,10 @@ def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     if rng.random() < 0.55:
         cord = finishes.second if rng.random() < 0.4 else None
         parts += seat_cushion(around(0.84 * x), (-0.86 * y, 0.8 * y), (seat + 0.0005, seat + 0.045), 0.02, finishes.soft, cord, 0.008)
-    return Shape(parts)
+    return parts
 
 
-def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round upholstered stool, one with a low curved back, or a drum with a skirt."""
     seat = h if h < 0.56 else min(0.48, 0.6 * h)
     low, squash = seat - 0.11, d / w
@@ -253,10 +253,10 @@ def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: f
         bow = arc((0.0, 0.0), 0.467 * w, 0.06 * math.pi, 0.94 * math.pi, 10, squash)
         rise = 0.55 + 0.45 * np.sin(np.linspace(0.1, math.pi - 0.1, 11))
         parts += pieces("back", wall(bow, 0.06, low, seat + (h - seat) * rise / rise.max(), 0.025), finishes.soft)
-    return Shape(parts)
+    return parts
 
 
-def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a high seat on four legs or on a column; a foot rest goes around it."""
     seat = h if h < 0.85 else 0.72 * h
     x, y = w / 2, d / 2
@@ -284,18 +284,18 @@ def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
         parts += pieces("back", upright_pad(rng, finishes, around(0.45 * w), (y - 0.055, y), (seat + 0.05, h)), finishes.soft)
         struts = [box(around(0.012, s * 0.3 * w), (0.85 * y, 0.85 * y + 0.012), (top, seat + 0.05), 0.002) for s in (-1, 1)]
         parts += pieces("struts", struts, metal)
-    return Shape(parts)
+    return parts
 
 
-def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bed-end bench, an ottoman, a stool on legs, a round pouf, or a ceramic drum."""
     x, y = w / 2, d / 2
     if form == "drum":
         glazed = Finish("glaze", finishes.soft.color, 0.2, density=900)
-        return Shape(pieces("drum", lathe("drum_stool", x, h, 24, squash=d / w), glazed))
+        return pieces("drum", lathe("drum_stool", x, h, 24, squash=d / w), glazed)
     if form == "pouf":
         wool = Finish("knit", finishes.soft.color, 0.95, pattern="knit", density=80)
-        return Shape(pieces("pouf", lathe("pouf", x, h, 28, squash=d / w), wool))
+        return pieces("pouf", lathe("pouf", x, h, 28, squash=d / w), wool)
     cord = piping(rng, finishes)
     if form == "ottoman":
         low = 0.66 * h
@@ -306,8 +306,8 @@ def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
             pad = tufted_panel((-x, x), (-0.34 * h, 0.0), (-y, y), max(2, round(w / 0.22)), max(2, round(d / 0.22)))
             laid = stand_up(pad, (0, 0, 0))
             drop = low - min(float(s.vertices[:, 2].min()) for s in laid)
-            return Shape(parts + pieces("seat", [s.translate((0, 0, drop)) for s in laid], finishes.soft))
-        return Shape(parts + seat_cushion((-x, x), (-y, y), (low, h), 0.05, finishes.soft, cord))
+            return parts + pieces("seat", [s.translate((0, 0, drop)) for s in laid], finishes.soft)
+        return parts + seat_cushion((-x, x), (-y, y), (low, h), 0.05, finishes.soft, cord)
     kind = draw_kind(rng, finishes, "bun blade")
     half = inside(kind, (x, y), h - 0.1, 0.04)
     thick = min(0.12, 0.3 * h) if form == "bench" else 0.07
@@ -315,7 +315,7 @@ def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
     parts = pieces("legs", legs(kind, half, top - 0.035, 0.04), finish)
     parts += pieces("frame", board(around(x - 0.008), around(y - 0.008), (top - 0.035, top), 0.02, 2, 0.004), finish)
     if form == "legs" and rng.random() < 0.35:
-        return Shape(parts + pieces("seat", board((-x, x), (-y, y), (top, h), 0.03, 3, finishes.style.edge), finishes.body))
+        return parts + pieces("seat", board((-x, x), (-y, y), (top, h), 0.03, 3, finishes.style.edge), finishes.body)
     for span in split((-x, x), max(1, round(w / 0.55)) if form == "bench" else 1, 0.001):
         parts += seat_cushion(span, (-y, y), (top, h), 0.04, finishes.soft, cord)
-    return Shape(parts)
+    return parts

@@ -8,7 +8,7 @@ from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, prism, sheet
 from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of, tint
 from pipeline.corpus.furniture.intervals import Interval, around, between, corners, edges, inset, polar, split
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Piece, Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, at_height, beam, box, cushion, revolve, rod, slab, stack
 from pipeline.corpus.furniture.textiles import bolster, channels, piping, seat_cushion, throw_pillow, tufted_panel, upright_pad
 
@@ -157,7 +157,7 @@ def rattan_chair(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     return parts + pieces("legs", feet, pole) + pieces("pad", [s.scale(np.array([0.8 * x, 0.74 * y, 1])) for s in pad], finishes.soft)
 
 
-def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a sofa: square, slim or rolled arms, a buttoned Chesterfield, a camel's back, a low cloud, or curved ends."""
     seats = max(1, round((w - 0.4) / (0.72 if form != "cloud" else 0.95)))
     seat = float(rng.uniform(0.40, 0.44)) * min(1.0, h / 0.78) * (0.92 if form == "cloud" else 1.0)
@@ -183,11 +183,11 @@ def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
     if form in ("chesterfield", "camelback"):
         for x in split(inner, seats, 0.001):
             parts += seat_cushion(x, (front, face - 0.002), (base_top, seat + 0.03), 0.04, finishes.soft, piping(rng, finishes), 0.03)
-        return Shape(parts)
+        return parts
     parts += _cushions(rng, inner, (front, face), (base_top, seat), h, seats, deep, finishes)
     if w > 1.2:
         parts += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), finishes)
-    return Shape(parts)
+    return parts
 
 
 def feet(rng: np.random.Generator, finishes: Finishes, x: Interval, y: Interval, lift: float, form: str) -> Pieces:
@@ -299,7 +299,7 @@ def frame_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float
     return parts + pieces("back_cushions", lean(pads, seat - 0.02, slope), finishes.soft)
 
 
-def l_shaped_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def l_shaped_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a sofa along the back and a chaise that reaches forward at one end (`form`: left or right, seen from the front)."""
     style = one_of(rng, ("track", "legs", "cloud"))
     lift, arm, deep = LIFTS[style], ARMS[style] * 1.1, 0.2
@@ -329,21 +329,21 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     parts += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), finishes)
     if form == "right":
         parts = tuple(Piece(p.name, p.solid.mirror(), p.finish, p.part) for p in parts)
-    return Shape(parts)
+    return parts
 
 
-def lazy_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def lazy_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bean bag in the shape of a drop, or a soft block seat with a rolled back."""
     x, y = w / 2, d / 2
     if form == "bean":
-        return Shape(pieces("bag", lean(lathe("bean_bag", x, h, 26, squash=y / x), 0.0, 0.22), finishes.soft))
+        return pieces("bag", lean(lathe("bean_bag", x, h, 26, squash=y / x), 0.0, 0.22), finishes.soft)
     seat = min(0.38, 0.52 * h)
     parts = pieces("body", cushion((-x, x), (-y, y), (0, seat), 0.11, 4, 0.03), finishes.soft)
     parts += pieces("back", cushion((-x, x), (y - 0.3 * d, y), (seat - 0.012, h), 0.12, 4), finishes.soft)
-    return Shape(parts + pieces("bolster", bolster(around(0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), finishes.second))
+    return parts + pieces("bolster", bolster(around(0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), finishes.second)
 
 
-def chaise_longue(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def chaise_longue(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a long seat with a raised back and one arm, or a scrolled recamier."""
     x, y = w / 2, d / 2
     seat = 0.42 * min(1.0, h / 0.8)
@@ -355,10 +355,10 @@ def chaise_longue(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     if form == "recamier":
         pad = tufted_panel((-x, x), (y - 0.17, y - 0.06), (seat - 0.13, h - 0.16), max(2, round(w / 0.18)), 3)
         parts += pieces("back", pad, finishes.soft) + pieces("scroll", bolster((-x, x), y - 0.085, h - 0.085, 0.085), finishes.soft)
-        return Shape(parts + pieces("bolster", bolster(around(0.75 * x), y - 0.255, seat + 0.105, 0.08), finishes.second))
+        return parts + pieces("bolster", bolster(around(0.75 * x), y - 0.255, seat + 0.105, 0.08), finishes.second)
     parts += pieces("back", cushion((-x, x), (y - 0.165, y), (seat - 0.13, h), 0.06, 3), finishes.soft)
     s = -1 if rng.random() < 0.5 else 1
     lo, hi = (x - 0.11, x) if s > 0 else (-x, -x + 0.11)
     parts += pieces("arm", cushion((lo, hi), (0.05 * y, y - 0.168), (seat + 0.024, seat + 0.24), 0.04, 3), finishes.soft)
     at = (-0.75 * x, x - 0.125) if s > 0 else (-x + 0.125, 0.75 * x)
-    return Shape(parts + pieces("bolster", bolster(at, y - 0.168 - 0.085, seat + 0.107, 0.08), finishes.second))
+    return parts + pieces("bolster", bolster(at, y - 0.168 - 0.085, seat + 0.107, 0.08), finishes.second)

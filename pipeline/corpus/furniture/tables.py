@@ -149,7 +149,7 @@ def corner_side_table(rng: np.random.Generator, form: str, w: float, d: float, h
     return Shape(parts + pieces("pedestal", pedestal(rng, finishes, 0.36 * w, h - 0.024), finishes.accent))
 
 
-def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Three splayed legs, a drum with an open side, a tulip foot, or a tray on a tripod."""
     material = top_finish(rng, finishes, stone=1.4)
     under = h - (0.035 if form == "tray" else 0.022)
@@ -158,14 +158,14 @@ def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: 
         parts = pieces("top", slab(circle(w / 2, 32), (under, h), 0.004), material)
         parts += pieces("wall", wall(bow, 0.014, 0.02, under), finishes.front)
         parts += pieces("boards", slab(circle(0.44 * w, 28), (0.45 * h, 0.45 * h + 0.016)), finishes.body)
-        return Shape(parts + pieces("foot", slab(circle(0.46 * w, 28), (0.0, 0.02), 0.003), finishes.body))
+        return parts + pieces("foot", slab(circle(0.46 * w, 28), (0.0, 0.02), 0.003), finishes.body)
     if form == "tray":
         parts = pieces("rim", ring((w / 2, w / 2), (w / 2 - 0.008, w / 2 - 0.008), (under, h), 32), finishes.handle)
         parts += pieces("tray", slab(circle(w / 2 - 0.0085, 32), (under, h - 0.022)), material)
     else:
         parts = pieces("top", top(circle(w / 2, 32), (under, h), finishes), material)
     if form == "tulip":
-        return Shape(parts + pieces("foot", lathe("trumpet", 0.34 * w, under, 24), finishes.front))
+        return parts + pieces("foot", lathe("trumpet", 0.34 * w, under, 24), finishes.front)
     angles = turns(3, -math.pi / 2)
     solids = [rod(polar(0.44 * w, a, 0), polar(0.2 * w, a, under - 0.012), 0.011, 0.018, 10) for a in angles]
     solids.append(slab(circle(0.27 * w, 24), (under - 0.012, under), 0.002))
@@ -173,7 +173,7 @@ def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: 
     if rng.random() < 0.4 and form == "tripod":
         shelf = prism(np.array([polar(0.26 * w, a) for a in angles]), "z", (0.38 * h, 0.38 * h + 0.014))
         parts += pieces("shelf", shelf, "glass" if rng.random() < 0.4 else finishes.body)
-    return Shape(parts)
+    return parts
 
 
 def desk(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
