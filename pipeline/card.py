@@ -90,12 +90,14 @@ class SetOf:
 class Form:
     """One form in the embedded corpus, under the name that its builder knows. `name` is the category name to write where it is not the corpus's own.
 
+    `builder`: what builds it where that is not the corpus's own.
     A `round` form has one diameter: its depth is set to its width; of an `upright` one its height is. A `still` form has nothing that
     moves. Models lower than `least_height` [m] take the first form instead. `styles`: those that it comes in, all where none is named;
     `classic` and `oriental` stand for several.
     """
 
     name: str = ""
+    builder: str = ""
     round: bool = False
     upright: bool = False
     still: bool = False

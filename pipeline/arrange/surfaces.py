@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 from pipeline import taxonomy
 from pipeline.arrays import Floats
 from pipeline.entities.asset import Asset, Link
-from pipeline.geometry.convex import hull
+from pipeline.geometry.convex import hull, rectangle_in
 from pipeline.geometry.memo import cached_on_asset
 from pipeline.geometry.prisms import Prisms, solid
 
 FLAT = 1e-3  # vertices within this height of a piece's highest lie on its top [m]
 LEAST = 0.07  # narrowest top that anything stands on [m]
-SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)  # what share of a top's bounds is tried: all of a board, two thirds of a disc
 LOWEST, HIGHEST = 0.03, 1.75  # tops within these heights above the furniture's foot are used [m]
 SOFT = 0.03  # the same for what is upholstered, whose cushions swell a little [m]
 UPHOLSTERED = frozenset({"sofa", "bed", "chair", "stool"})  # super-categories
@@ -77,18 +76,8 @@ def level_top(vertices: Floats, flat: float = FLAT) -> tuple[float, float, float
     outline = hull(np.ascontiguousarray(np.round(upper, 6))) if len(upper) > 2 else upper
     if len(outline) < 3:
         return None
-    low, high = outline.min(0), outline.max(0)
-    middle, half = (low + high) / 2, (high - low) / 2
-    edges = np.roll(outline, -1, 0) - outline
-    signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-    for share in SHARES:
-        if 2 * share * half.min() < LEAST:
-            return None
-        off = (middle + signs * half * share)[:, None] - outline[None]
-        if (edges[None, :, 0] * off[..., 1] - edges[None, :, 1] * off[..., 0]).min() >= -1e-6:
-            (x0, y0), (x1, y1) = (middle - half * share).tolist(), (middle + half * share).tolist()
-            return x0, y0, x1, y1, z
-    return None
+    inside = rectangle_in(outline, LEAST)
+    return (*inside, z) if inside else None
 
 
 def _level(link: Link, tolerance: float) -> Floats:

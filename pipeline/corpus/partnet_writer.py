@@ -42,19 +42,10 @@ class Component:
     pieces: Pieces
 
     @property
-    def file(self) -> str:
-        """Path of its OBJ file in the object's folder."""
-        return f"textured_objs/original-{self.number}.obj"
-
-    @property
-    def collides_as_seen(self) -> bool:
-        """Whether its own mesh serves collisions: no piece of it belongs to a group."""
-        return not any(piece.group for piece in self.pieces)
-
-    @property
-    def collision_file(self) -> str:
-        """Path of the OBJ file that it collides by."""
-        return self.file if self.collides_as_seen else f"textured_objs/convex-{self.number}.obj"
+    def files(self) -> tuple[str, str]:
+        """OBJ files in the object's folder: what is seen and what collides, the same where no piece of it belongs to a group."""
+        kind = "convex" if any(piece.group for piece in self.pieces) else "original"
+        return f"textured_objs/original-{self.number}.obj", f"textured_objs/{kind}-{self.number}.obj"
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,19 +131,18 @@ def write_model(model: Model, folder: Path) -> None:
     shape = shape_of(model)
     frame = normalisation(model, shape)
     links = link_records(shape, frame)
-    objects = folder / "textured_objs"
-    objects.mkdir(parents=True, exist_ok=True)
+    (folder / "textured_objs").mkdir(parents=True, exist_ok=True)
     sheet = texture.atlas(shape.pieces())
     for component in (c for link in links for c in link.components):
-        _write_component(component, frame, objects, sheet)
+        _write_component(component, frame, folder, sheet)
     (folder / TEXTURE).parent.mkdir(exist_ok=True)
     (folder / TEXTURE).write_bytes(texture.paint(seeds.generator(model.seed, "corpus.furniture.texture"), sheet))
     merged = without_handles(links)
     name = f"partnet_{seeds.key(model.seed, 'corpus.furniture.shapenet'):032x}"
     (folder / "mobility.urdf").write_bytes(urdf(name, merged, frame))
     (folder / "mobility_annotation_gapartnet.urdf").write_bytes(urdf(name, links, frame))
-    words = _words(model, merged)
-    for file, lines in (("semantics.txt", words), ("semantics_gapartnet.txt", _gapartnet_words(links, words[-1][2]))):
+    words = _words(model, merged, classes=False)
+    for file, lines in (("semantics.txt", words), ("semantics_gapartnet.txt", _words(model, links, classes=True))):
         (folder / file).write_bytes("".join(f"{link} {joint} {word}\n" for link, joint, word in lines).encode())
     corners, shapenet = frame.point(shape.bounds()), name.removeprefix("partnet_")
     about = {"user_id": "embedded", "model_cat": model.partnet_category, "category": model.category, "model_id": shapenet}
@@ -181,13 +171,12 @@ def urdf(name: str, links: Sequence[LinkRecord], frame: Frame) -> bytes:
     origins = {link.name: link.origin for link in links} | {"base": np.zeros(3)}
     for number, link in enumerate(links):
         element = ET.SubElement(robot, "link", name=link.name)
-        for kind in ("visual", "collision"):
+        for k, kind in enumerate(("visual", "collision")):
             for component in link.components:
                 attributes = {"name": f"{component.name}-{component.number}"} if kind == "visual" else {}
                 shape = ET.SubElement(element, kind, attributes)
                 ET.SubElement(shape, "origin", xyz=_xyz(-link.origin))
-                file = component.file if kind == "visual" else component.collision_file
-                ET.SubElement(ET.SubElement(shape, "geometry"), "mesh", filename=file)
+                ET.SubElement(ET.SubElement(shape, "geometry"), "mesh", filename=component.files[k])
         mover = link.mover
         joint = ET.SubElement(robot, "joint", name=f"joint_{number}", type=mover.type if mover else "fixed")
         if link.parent == "base":
@@ -233,24 +222,16 @@ def mobility(links: Sequence[LinkRecord], words: Sequence[tuple[str, str, str]],
     return entries
 
 
-def _words(model: Model, links: Sequence[LinkRecord]) -> list[tuple[str, str, str]]:
-    """Return (link, joint, semantic) of semantics.txt."""
+def _words(model: Model, links: Sequence[LinkRecord], *, classes: bool) -> list[tuple[str, str, str]]:
+    """Return (link, joint, word) of semantics.txt, or with part `classes` for semantics, and handles fixed, of semantics_gapartnet.txt."""
     furniture = model.partnet_category in FURNITURE
     body = "furniture_body" if furniture else f"{model.partnet_category.lower()}_body"
     words = []
     for link in links:
-        if link.mover is None:
-            words.append((link.name, "heavy", body))
-        else:
-            word = "rotation_door" if furniture and link.mover.semantic == "door" else link.mover.semantic
-            words.append((link.name, JOINT_WORDS[link.mover.type], word))
+        word = link.mover.semantic if link.mover and not classes else link.part
+        joint = JOINT_WORDS[link.mover.type] if link.mover else "fixed" if link.part else "heavy"
+        words.append((link.name, joint, "rotation_door" if word == "door" and furniture else word or body))
     return words
-
-
-def _gapartnet_words(links: Sequence[LinkRecord], body: str) -> list[tuple[str, str, str]]:
-    """Return the lines of semantics_gapartnet.txt: part classes for semantics, handles fixed."""
-    joints = [JOINT_WORDS[k.mover.type] if k.mover else "fixed" if k.part else "heavy" for k in links]
-    return [(link.name, joint, link.part or body) for link, joint in zip(links, joints, strict=True)]
 
 
 def annotation(links: Sequence[LinkRecord], frame: Frame) -> list[dict[str, Any]]:
@@ -286,14 +267,12 @@ def part_box(link: LinkRecord, frame: Frame) -> NDArray[np.float64]:
 
 def _write_component(component: Component, frame: Frame, folder: Path, sheet: Atlas) -> None:
     """Write the OBJ and MTL of one component, a group per material; all components of an object share one texture."""
-    stem = f"original-{component.number}"
-    groups = wavefront.group_by_finish(component.pieces, stem)
-    text = wavefront.text(groups, f"{stem}.mtl", sheet)
-    (folder / f"{stem}.obj").write_bytes(text.obj(frame.scale, -frame.centre))
-    (folder / f"{stem}.mtl").write_bytes(wavefront.mtl(groups, f"../{TEXTURE}"))
-    if not component.collides_as_seen:
-        convex = wavefront.bare(f"convex-{component.number}", colliders(component.pieces))
-        (folder / f"convex-{component.number}.obj").write_bytes(convex.obj(frame.scale, -frame.centre))
+    seen, collides = (folder / file for file in component.files)
+    groups = wavefront.group_by_finish(component.pieces, seen.stem)
+    seen.write_bytes(wavefront.text(groups, f"{seen.stem}.mtl", sheet).obj(frame.scale, -frame.centre))
+    seen.with_suffix(".mtl").write_bytes(wavefront.mtl(groups, f"../{TEXTURE}"))
+    if collides != seen:
+        collides.write_bytes(wavefront.bare(collides.stem, colliders(component.pieces)).obj(frame.scale, -frame.centre))
 
 
 def _xyz(vector: NDArray[np.float64]) -> str:

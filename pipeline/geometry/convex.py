@@ -1,4 +1,4 @@
-"""Convex polygons in plan, compiled: separating axes, distance to a point, hulls.
+"""Convex polygons in plan, compiled: separating axes, distance to a point, hulls; rectangles inside them.
 
 A polygon is (V, 2) [m], counter-clockwise; repeated vertices are allowed (they pad batches of unequal polygons).
 """
@@ -9,6 +9,8 @@ import numpy as np
 
 from pipeline.arrays import Floats
 from pipeline.geometry.compiled import borrowing, compiled
+
+SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)  # what share of a polygon's bounds is tried: all of a board, two thirds of a disc
 
 
 @borrowing
@@ -82,3 +84,19 @@ def hull(points: Floats) -> Floats:
     """Return the convex hull (H, 2) of points (N, 2), counter-clockwise (Andrew 1979); fewer than 3 if degenerate."""
     by_y = points[np.argsort(points[:, 1], kind="mergesort")]
     return _chain(by_y[np.argsort(by_y[:, 0], kind="mergesort")])
+
+
+def rectangle_in(outline: Floats, least: float) -> tuple[float, float, float, float] | None:
+    """Return the largest (x0, y0, x1, y1) of some rectangles, square to the axes, inside a polygon (V, 2); None if it is narrower than `least` [m]."""
+    low, high = outline.min(0), outline.max(0)
+    middle, half = (low + high) / 2, (high - low) / 2
+    edges = np.roll(outline, -1, 0) - outline
+    signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    for share in SHARES:
+        if 2 * share * half.min() < least:
+            return None
+        off = (middle + signs * half * share)[:, None] - outline[None]
+        if (edges[None, :, 0] * off[..., 1] - edges[None, :, 1] * off[..., 0]).min() >= -1e-6:
+            (x0, y0), (x1, y1) = (middle - half * share).tolist(), (middle + half * share).tolist()
+            return x0, y0, x1, y1
+    return None

@@ -4,6 +4,7 @@ import struct
 import zlib
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 UP = 2  # the filter: a byte less the one above it; most of a plan goes on as the row before did
@@ -18,10 +19,13 @@ def png(image: Image.Image) -> bytes:
     rows[:, 0] = UP
     rows[0, 1:] = flat[0]
     np.subtract(flat[1:], flat[:-1], out=rows[1:, 1:])
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)  # 8 bits, RGB
-    parts = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), LEVEL)), (b"IEND", b""))
-    return b"\x89PNG\r\n\x1a\n" + b"".join(map(_chunk, *zip(*parts, strict=True)))
+    return encode(rows, width, LEVEL)
 
 
-def _chunk(kind: bytes, data: bytes) -> bytes:
-    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+def encode(rows: NDArray[np.uint8], width: int, level: int, palette: bytes = b"") -> bytes:
+    """Return the file of filtered `rows` (H, 1 + bytes), 8 bits a channel: RGB, or numbers of a `palette`. Bytes depend on these and zlib alone."""
+    parts = [(b"IHDR", struct.pack(">IIBBBBB", width, len(rows), 8, 3 if palette else 2, 0, 0, 0))]
+    parts += [(b"PLTE", palette)] if palette else []
+    parts += [(b"IDAT", zlib.compress(rows.tobytes(), level)), (b"IEND", b"")]
+    chunks = (struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in parts)
+    return b"\x89PNG\r\n\x1a\n" + b"".join(chunks)

@@ -174,14 +174,16 @@ def microwave(rng: np.random.Generator, form: str, w: float, d: float, h: float,
 
 
 def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a round door in front of a drum, a detergent drawer, a dial and buttons; or a lid over a drum that stands."""
+    """Build a round door in front of a drum, a detergent drawer, a dial and buttons."""
     outside = "enamel" if rng.random() < 0.65 else "graphite"
-    if form == "top":
-        return _top_loader(w, d, h, outside)
     t, face = 0.02, -d / 2 + 0.045  # plane of the front panel
     x, panel = around(w / 2), h - 0.135
     r, zc = 0.34 * w, 0.5 * (panel + 0.1)
-    base = _cabinet(x, (face, d / 2), h, t, outside)
+    base = pieces("top", box(x, (face, d / 2), (h - 0.03, h), 0.004), outside)
+    base += pieces("sides", [box(span, (face + t, d / 2), (0.012, h - 0.03)) for span in edges(x, t)], outside)
+    base += pieces("bottom", box(inset(x, t), (face + 0.03, d / 2), (0.012, 0.03)), outside)
+    base += pieces("back", box(inset(x, t), (d / 2 - 0.01, d / 2), (0.03, h - 0.03)), outside)
+    base += _glides(inset(x, 0.06), inset((face, d / 2), 0.06), 0.012)
     square = np.array([_on_square(a, x, (0.1, panel), zc) for a in np.arange(24) * 2 * math.pi / 24])
     hole = circle(r - 0.03, 24, (0.0, zc))
     rims = [[at_height(o, k * t) for k in (0, 1)] for o in (square, hole)]
@@ -201,8 +203,9 @@ def washing_machine(rng: np.random.Generator, form: str, w: float, d: float, h: 
     return Shape(base, tuple(movers))
 
 
-def _top_loader(w: float, d: float, h: float, outside: Material) -> Shape:
-    """Return a machine filled from above: a lid over an upright drum, dials on a panel at the back."""
+def top_loader(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+    """Build a washing machine filled from above: a lid over an upright drum, dials on a panel at the back."""
+    outside = "enamel" if rng.random() < 0.65 else "graphite"
     x, y, t = around(w / 2), around(d / 2), 0.018
     deck, back = h - 0.16, y[1] - 0.12
     inner = inset(x, t)
@@ -227,15 +230,6 @@ def _top_loader(w: float, d: float, h: float, outside: Material) -> Shape:
     starts = [0.26 * w + 0.03 * k for k in range(3)]
     movers += [button(f"button_{k}", (bx, bx + 0.02), around(0.008, at), face, "plastic") for k, bx in enumerate(starts)]
     return Shape(base + _display((-0.08, 0.08), face, around(0.014, at)), tuple(movers))
-
-
-def _cabinet(x: Interval, y: Interval, h: float, t: float, finish: Material) -> Pieces:
-    """Return the housing without its front: sides, top, bottom, back and four feet."""
-    parts = pieces("top", box(x, y, (h - 0.03, h), 0.004), finish)
-    parts += pieces("sides", [box(span, (y[0] + t, y[1]), (0.012, h - 0.03)) for span in edges(x, t)], finish)
-    parts += pieces("bottom", box(inset(x, t), (y[0] + 0.03, y[1]), (0.012, 0.03)), finish)
-    parts += pieces("back", box(inset(x, t), (y[1] - 0.01, y[1]), (0.03, h - 0.03)), finish)
-    return parts + _glides(inset(x, 0.06), inset(y, 0.06), 0.012)
 
 
 def _on_square(angle: float, x: Interval, z: Interval, zc: float) -> tuple[float, float]:

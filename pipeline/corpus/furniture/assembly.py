@@ -10,15 +10,16 @@ from pipeline import seeds
 from pipeline.card import cards
 from pipeline.corpus.furniture.catalogue import Model, series_rng
 from pipeline.corpus.furniture.finishes import LEATHERS, Finishes, draw_finishes
-from pipeline.corpus.furniture.shape import Shape, fit_to_size, freeze
+from pipeline.corpus.furniture.shape import Pieces, Shape, fit_to_size, freeze
 from pipeline.errors import ContentError
 
-Builder = Callable[[np.random.Generator, str, float, float, float, Finishes], Shape]
+Builder = Callable[[np.random.Generator, str, float, float, float, Finishes], Shape | Pieces]
 
 
-def builder(category: str) -> Builder:
-    """Return the function that the card of a category names as "module.function". Raises ContentError where there is none."""
-    module, _, name = cards()[category].corpus.builder.partition(".")
+def builder(category: str, form: str) -> Builder:
+    """Return the function that the card of a category names for a form as "module.function". Raises ContentError where there is none."""
+    card = cards()[category].corpus
+    module, _, name = (card.forms[form].builder or card.builder).partition(".")
     try:
         function: Builder = getattr(importlib.import_module(f"{__package__}.{module}"), name)
     except (ImportError, AttributeError):
@@ -46,5 +47,6 @@ def main_material(model: Model) -> str:
 def shape_of(model: Model) -> Shape:
     """Return the shape of a model, its box exactly `model.size`; static models have their movers fixed."""
     rng = seeds.generator(model.seed, "corpus.furniture.shape")
-    shape = fit_to_size(builder(model.category)(rng, model.form, *model.size, finishes_of(model)), model.size)
+    built = builder(model.category, model.form)(rng, model.form, *model.size, finishes_of(model))
+    shape = fit_to_size(built if isinstance(built, Shape) else Shape(built), model.size)
     return shape if model.articulated else freeze(shape)

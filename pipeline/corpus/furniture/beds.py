@@ -8,18 +8,16 @@ from pipeline.corpus.furniture.bent import prism, tube
 from pipeline.corpus.furniture.finishes import Finishes, cane
 from pipeline.corpus.furniture.intervals import Interval, around, edges, inset, split
 from pipeline.corpus.furniture.legs import leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Piece, Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, box, cushion, pillow, rod
 from pipeline.corpus.furniture.textiles import channels, duvet, throw_pillow, tufted_panel
 
 SOFT = frozenset({"upholstered", "tufted", "wing"})
 
 
-def bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bed of one of the forms, made up with a mattress, a duvet and pillows."""
     x, y = around(w / 2), around(d / 2)
-    if form == "platform":
-        return _platform(rng, w, d, h, finishes)
     soft = form in SOFT
     lift = float(rng.uniform(0.1, 0.16))
     rail_top = min(lift + float(rng.uniform(0.15, 0.2)), 0.4 * h)
@@ -43,7 +41,7 @@ def bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, finis
         kind = "bun" if finishes.style.ornament > 0.5 and lift < 0.16 else "square" if form in ("panel", "slatted") else "tapered"
         feet = [s.translate((0, -0.04, 0)) for s in legs(kind, (w / 2 - 0.07, d / 2 - 0.12), lift, 0.055)]
         parts += pieces("feet", feet, leg_finish(finishes, kind))
-    return Shape(parts + bedding(rng, inner_x, inner_y, low, top, finishes, h - top))
+    return parts + bedding(rng, inner_x, inner_y, low, top, finishes, h - top)
 
 
 def bedding(rng: np.random.Generator, x: Interval, y: Interval, low: float, top: float, finishes: Finishes, room: float = 1.0) -> Pieces:
@@ -145,7 +143,7 @@ def _hoop(x: Interval, y: float, h: float, finishes: Finishes) -> list[Solid]:
     return solids
 
 
-def _platform(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def platform_bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a low deck of boards that stands out around the mattress, with a plain back that leans."""
     deck = min(0.26, 0.32 * h)
     x, y = w / 2, d / 2
@@ -159,15 +157,11 @@ def _platform(rng: np.random.Generator, w: float, d: float, h: float, finishes: 
         pads = [cushion(around(half - 0.01, s * half), (y - 0.11, y - 0.047), (deck + 0.12, h - 0.02), 0.028, 3) for s in (-1, 1)]
         parts += pieces("back_pads", pads, finishes.soft)
     edge, room = min(0.12, 0.06 * w), h - deck
-    return Shape(parts + bedding(rng, around(x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * room), finishes, 0.6 * room))
+    return parts + bedding(rng, around(x - edge), (-y + edge, y - 0.12), deck, deck + min(0.2, 0.4 * room), finishes, 0.6 * room)
 
 
-def kids_bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a bed of one of the forms. Where it is wide the sleeper lies along x."""
-    return Shape({"rails": _rail_bed, "bunk": _bunk, "car": _car}[form](rng, w, d, h, finishes))
-
-
-def _rail_bed(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def rail_bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a child's bed with rails of bars around it."""
     lift, t = 0.12, 0.045
     x, y = around(w / 2), around(d / 2)
     low, guard = min(0.36, 0.42 * h), 0.66 * h
@@ -190,7 +184,7 @@ def _rail_bed(rng: np.random.Generator, w: float, d: float, h: float, finishes: 
     return parts + bedding(rng, inner_x, inner_y, lift + 0.08, low + 0.06, finishes)
 
 
-def _bunk(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def bunk_bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Two berths over each other and a ladder at the front."""
     t, thick = 0.06, 0.026
     x, y = around(w / 2), (-d / 2 + 0.07, d / 2)
@@ -218,7 +212,7 @@ def _bunk(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fini
     return parts + pieces("ladder", ladder, finishes.timber)
 
 
-def _car(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def car_bed(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bed between two boards cut like a car, with wheels; the bonnet is at the front."""
     x = w / 2
     body = min(0.55, 0.6 * h)

@@ -141,9 +141,8 @@ def split_bent_quads(solid: Solid) -> Solid:
 
 def lean(solids: Sequence[Solid], at: float, slope: float) -> list[Solid]:
     """Return the solids leaned back (to +y) by `slope` per height above `at` [m]; what is upright at that height stays where it is."""
-    matrix = np.eye(3)
-    matrix[1, 2] = slope
-    return [s.translate((0, 0, -at)).transform(matrix).translate((0, 0, at)) for s in solids]
+    foot, shear = np.array([0.0, 0.0, at]), np.array([(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, slope, 1.0)])
+    return [Solid((s.vertices - foot) @ shear + foot, s.faces) for s in solids]
 
 
 def blades(roots: Points, tips: Points, width: Points | float, *, belly: float = 0.5, thick: float = 0.004, n: int = 8) -> list[Solid]:

@@ -98,14 +98,10 @@ def case(size: Sequence[float], columns: Sequence[Column], how: Case, *, reserve
         right = float(cuts[i + 1]) - (b / 2 if i < len(columns) - 1 else 0)
         if i:
             parts.append(Shape(pieces(f"divider_{i}", box((left - b, left), (y[0], y[1] - BACK), within), how.body)))
-        outer = (left, right) if how.inset else (_half(left, b, first=i == 0), _half(right, -b, first=i == len(columns) - 1))
+        # An overlaid front covers an outer panel wholly, an inner one by half.
+        outer = (left, right) if how.inset else (left - (b / 2 if i else b), right + (b / 2 if i < len(columns) - 1 else b))
         parts.append(_column(f"c{i}", column, (left, right), outer, y, within, face, how))
     return join_shapes(*parts, Shape(feet(how.feet, x, (face + 0.01, d / 2), how.feet_height, how.feet_finish)))
-
-
-def _half(edge: float, board: float, *, first: bool) -> float:
-    """Return where an overlaid front ends beside a panel: it covers an outer one wholly, an inner one by half."""
-    return edge - board if first else edge - board / 2
 
 
 def _column(name: str, column: Column, x: Interval, outer: Interval, y: Interval, z: Interval, face: float, how: Case) -> Shape:

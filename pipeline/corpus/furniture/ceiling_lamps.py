@@ -8,7 +8,7 @@ from pipeline.corpus.furniture.bent import curve, lathe, tube, turns
 from pipeline.corpus.furniture.finishes import Finishes, pick
 from pipeline.corpus.furniture.intervals import around, polar
 from pipeline.corpus.furniture.lamps import bulb, shade, shade_word, turn_along_y
-from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import box, circle, cushion, revolve, ring, rod, slab
 
 THIN = 0.0035  # radius of a cord
@@ -19,16 +19,11 @@ SHARES = {  # height of a shade in its widths
 }  # fmt: skip
 
 
-def pendant_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a shade or globe on a cord, a bar over a table, a cluster, a chandelier, a lantern, a sputnik, or a cage."""
-    if form == "linear" and d > w:  # built along x, turned to the longer side
-        return turn_along_y(pendant_lamp(rng, form, d, w, h, finishes))
-    build = {"linear": _linear, "cluster": _cluster, "chandelier": _chandelier, "sputnik": _sputnik}.get(form)
-    if build:
-        return Shape(build(rng, w, d, h, finishes))
+def pendant_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a shade, a globe, a lantern or a cage on a cord."""
     kind = form if form in ("globe", "lantern", "cage") else shade_word(rng, finishes, "globe lantern cage crystal paper")
     tall = min(0.66 * h, SHARES.get(kind, 0.6) * w)
-    return Shape(shade(rng, finishes, kind, w / 2, (0.0, tall)) + _suspension(tall - 0.002, h, finishes))
+    return shade(rng, finishes, kind, w / 2, (0.0, tall)) + _suspension(tall - 0.002, h, finishes)
 
 
 def _suspension(z: float, h: float, finishes: Finishes) -> Pieces:
@@ -37,7 +32,10 @@ def _suspension(z: float, h: float, finishes: Finishes) -> Pieces:
     return pieces("cord", cord, finishes.handle) + pieces("rose", rose, finishes.handle)
 
 
-def _linear(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def linear_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a row of shades under a bar over a table, or one long beam of light; along the longer side."""
+    if d > w:
+        return turn_along_y(linear_lamp(rng, form, d, w, h, finishes))
     metal = finishes.handle
     parts = pieces("rose", box(around(0.3 * w), (-0.035, 0.035), (h - 0.024, h), 0.004), metal)
     if rng.random() < 0.35:  # one long beam of light
@@ -60,7 +58,8 @@ def _linear(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fi
     return parts
 
 
-def _cluster(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def cluster_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build shades that hang at several heights from one rose."""
     count = int(rng.integers(3, 7))
     r = 0.2 * min(w, d) if min(w, d) > 0.3 else 0.34 * min(w, d)
     squash = min(1.0, d / w)
@@ -75,7 +74,7 @@ def _cluster(rng: np.random.Generator, w: float, d: float, h: float, finishes: F
     return parts
 
 
-def _chandelier(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def chandelier(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Arms that swing out and up from a turned stem, each with a small shade or a candle, drops of glass below."""
     metal = finishes.handle
     r, body = w / 2, min(0.62 * h, 0.8 * w)
@@ -97,7 +96,7 @@ def _chandelier(rng: np.random.Generator, w: float, d: float, h: float, finishes
     return parts + _suspension(body - 0.002, h, finishes)
 
 
-def _sputnik(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def sputnik_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Rods in all directions from a ball, a lit globe on each."""
     count, r = 12, 0.09 * min(w, d)
     middle = np.array([0, 0, min(0.66 * h, 0.9 * min(w, d)) / 2])
@@ -115,20 +114,18 @@ def _sputnik(rng: np.random.Generator, w: float, d: float, h: float, finishes: F
     return parts + _suspension(z + 0.8 * r, h, finishes)
 
 
-def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a disc, a square panel, a ring, a rain of crystal, a lattice frame or a row of spots; tall ones hang in tiers."""
+def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a disc, a square panel, a ring, a rain of crystal, or a lattice frame; tall ones hang in tiers."""
     metal, squash = finishes.handle, d / w
-    if form == "crystal" or (h > 0.3 and form != "spots"):
-        return Shape(_rain(form, w, d, h, finishes))
+    if form == "crystal" or h > 0.3:
+        return _rain(form, w, d, h, finishes)
     if form == "frame":
-        return Shape(_lattice(w, d, h, finishes))
-    if form == "spots":
-        return Shape(_spots(rng, w, d, h, finishes))
+        return _lattice(w, d, h, finishes)
     if form == "ring":
         parts = pieces("ring", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0, 0.4 * h), 32, squash=squash), "glow")
         parts += pieces("hoop", ring((0.5 * w, 0.5 * w), (0.42 * w, 0.42 * w), (0.4 * h, 0.6 * h), 32, squash=squash), metal)
         bars = [box(around(0.42 * w), (-0.012, 0.012), (0.6 * h, 0.72 * h)), box((-0.012, 0.012), around(0.42 * d), (0.72 * h, 0.84 * h))]
-        return Shape(parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal))
+        return parts + pieces("spokes", bars, metal) + pieces("mount", revolve([(0.08, 0.84 * h), (0.08, h)], 20), metal)
     finish = metal if rng.random() < 0.6 else finishes.timber
     if form == "disc":
         top = h - min(0.4 * h, 0.05)
@@ -137,10 +134,10 @@ def ceiling_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     else:
         mount = [box(around(w / 2), around(d / 2), (0.45 * h, h), 0.004)]
         diffuser = [cushion(around(0.47 * w), around(0.47 * d), (0, 0.45 * h), min(0.03, 0.2 * h), 2)]
-    return Shape(pieces("mount", mount, finish) + pieces("diffuser", diffuser, "glow"))
+    return pieces("mount", mount, finish) + pieces("diffuser", diffuser, "glow")
 
 
-def _spots(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def spots(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bar with a row of spots that look down, each a little another way."""
     metal = finishes.handle
     parts = pieces("bar", box(around(w / 2), (-0.03, 0.03), (h - 0.03, h), 0.003), metal)

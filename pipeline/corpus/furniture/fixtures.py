@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.catalogue import series_rng
 from pipeline.corpus.furniture.finishes import COLORS, Finish, Finishes, Material, draw_material, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, lid, panel, reach, top_button
-from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset
+from pipeline.corpus.furniture.intervals import Interval, around, between, edges, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, group_pieces, join_shapes, pieces, staves
 from pipeline.corpus.furniture.solids import at_height, box, circle, cushion, revolve, ring, rod, rounded_rectangle, shell, slab, stack
 from pipeline.corpus.furniture.storage import front_style
@@ -131,22 +131,17 @@ def vanity(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     face = -d / 2 + max(reach(how.style.handle), how.overhang)
     if vessel:
         r, middle = min(0.36 * (d - 0.1), 0.19), (face + d / 2 - 0.11) / 2
-        basin = _vessel(min(r * 1.2, 0.4 * w), r, (0.0, middle), (body, body + 0.12))
+        rx, low = min(r * 1.2, 0.4 * w), body + 0.012
+
+        def oval(scale: float, height: float) -> NDArray[np.float64]:
+            return at_height(circle(rx * scale, 24, (0.0, middle), r / rx), height)
+
+        wall = shell([oval(0.72, low), oval(1.0, body + 0.12)], [oval(0.66, low), oval(0.94, body + 0.12)])  # it flares upwards
+        basin = staves("basin", wall, "ceramic") + pieces("basin_floor", stack([oval(0.70, body), oval(0.72, low)]), "ceramic")
         return join_shapes(shape, Shape(basin), tap(d / 2 - 0.045, body, h - body, 0.13, finishes.handle))
     hole = around(min(0.26, 0.5 * w - 0.07)), (face + 0.06, d / 2 - 0.11)
     shape = _sink_into_top(shape, *hole, body - 0.002, 0.13, "ceramic")
     return join_shapes(shape, tap(d / 2 - 0.055, body, h - body, 0.13, finishes.handle))
-
-
-def _vessel(rx: float, ry: float, centre: Spot, z: Interval) -> Pieces:
-    """Return an oval open basin that stands on a counter, its wall flaring upwards."""
-
-    def oval(scale: float, height: float) -> NDArray[np.float64]:
-        return at_height(circle(rx * scale, 24, centre, ry / rx), height)
-
-    low = z[0] + 0.012
-    wall = shell([oval(0.72, low), oval(1.0, z[1])], [oval(0.66, low), oval(0.94, z[1])])
-    return staves("basin", wall, "ceramic") + pieces("basin_floor", stack([oval(0.70, z[0]), oval(0.72, low)]), "ceramic")
 
 
 def _oval(rx: float, y: Interval, z: float) -> NDArray[np.float64]:
@@ -204,28 +199,20 @@ def _lever(half: float, y: float, h: float) -> Mover:
     return Mover("lever", parts, "revolute", (1, 0, 0), at, 0.5, "hinge_handle", "lever", (-1.0, 0.0, 0.0))
 
 
-def _rays(w: float, d: float) -> NDArray[np.float64]:
-    """Return directions (32, 2) around the centre that include those of a rectangle's corners.
-
-    Outlines along the same rays make staves with plane sides, so each is convex.
-    """
-    corner = math.atan2(d, w)
-    at_corners = [corner, math.pi - corner, math.pi + corner, -corner + 2 * math.pi]
-    angles = np.sort(np.concatenate([np.linspace(0, 2 * math.pi, 28, endpoint=False), at_corners]))
-    return np.stack([np.cos(angles), np.sin(angles)], axis=1)
-
-
 def _along(u: NDArray[np.float64], a: float, b: float, power: float) -> NDArray[np.float64]:
     """Return the superellipse |x/a|^p + |y/b|^p = 1 along rays `u`, (n, 2)."""
     reach = (np.abs(u[:, 0] / a) ** power + np.abs(u[:, 1] / b) ** power) ** (-1 / power)
     return np.asarray(u * reach[:, None])
 
 
-def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a tub with aprons, or one that stands free on its oval foot; a tap at its head."""
     a, b, low = w / 2, d / 2, 0.14
     rim = h if form == "free" else h - 0.12
-    u = _rays(w, d)
+    corner = math.atan2(d, w)  # rays through the corners too make staves with plane sides, so each is convex
+    at_corners = [corner, math.pi - corner, math.pi + corner, -corner + 2 * math.pi]
+    angles = np.sort(np.concatenate([np.linspace(0, 2 * math.pi, 28, endpoint=False), at_corners]))
+    u = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     outer = _along(u, a, b, 2.6) if form == "free" else u / np.maximum(np.abs(u[:, :1]) / a, np.abs(u[:, 1:]) / b)
     inner = _along(u, a - 0.07, b - 0.07, 3.0)
     foot = 0.82 * outer if form == "free" else outer
@@ -237,10 +224,10 @@ def bathtub(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
         spout = [rod((x, 0, rim), (x, 0, h - 0.01), 0.014, n=10), rod((x, 0, h - 0.018), (x - 0.13, 0, h - 0.03), 0.012, n=10)]
         spout += [rod((x, s * 0.09, rim), (x, s * 0.09, rim + 0.05), 0.016, 0.02, 10) for s in (-1, 1)]
         base += pieces("tap", spout, finishes.handle)
-    return Shape(base)
+    return base
 
 
-def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a tray with two glass walls, an open entrance at the front, a rail with a head and a mixer at the back wall."""
     tray, metal = 0.06, finishes.handle
     x, y, back = around(w / 2), around(d / 2), d / 2 - 0.05
@@ -257,7 +244,7 @@ def shower(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     pole += revolve([(0.11, h - 0.055), (0.11, h - 0.045), (0.03, h - 0.022)], 20, (0.0, d / 2 - 0.33))
     base += pieces("posts", posts, metal) + pieces("rail", pole, metal)
     base += pieces("mixer", box((-0.13, 0.13), (back, d / 2), (1.02, 1.07), 0.008), metal)
-    return Shape(base + pieces("drain", ring((0.045, 0.045), (0.03, 0.03), (tray - 0.02, tray - 0.017), 16), "steel"))
+    return base + pieces("drain", ring((0.045, 0.045), (0.03, 0.03), (tray - 0.02, tray - 0.017), 16), "steel")
 
 
 def room_door(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -275,22 +262,18 @@ def room_door(rng: np.random.Generator, form: str, w: float, d: float, h: float,
     rect = Rect(inset(inner, 0.003), (0.006, h - t - 0.003), y[0])
     side = 1.0 if rng.random() < 0.5 else -1.0  # of the hinge: 1 at the left
     pivot, grip = (rect.x[0], rect.x[1] - 0.065) if side > 0 else (rect.x[1], rect.x[0] + 0.065)
-    parts, at = _leaf(rng, form, rect, FrontStyle("slab", "none", finish, finishes.handle, LEAF)), (pivot, rect.y, 1.0)
+    style, at = FrontStyle("slab", "none", finish, finishes.handle, LEAF), (pivot, rect.y, 1.0)
+    if form == "flush":
+        parts = panel(rect, style)
+    else:  # two panels, of which the upper one may be glazed
+        looks = replace(style, panel="glass" if form == "glazed" else pick(rng, "shaker raised"))  # type: ignore[arg-type]
+        cut, low = rect.z[0] + 0.42 * rect.height, replace(looks, panel="shaker") if form == "glazed" else looks
+        halves = panel(replace(rect, z=(rect.z[0], cut)), low) + panel(replace(rect, z=(cut, rect.z[1])), looks)
+        parts = group_pieces(halves, "leaf")
     leaf = Mover("leaf", parts, "revolute", (0, 0, -side), at, math.radians(100), "hinge_door", "door")
     levers = [_door_lever("lever_front", (grip, rect.y, 1.02), -1.0, side, finishes.handle)]
     levers.append(_door_lever("lever_back", (grip, rect.y + LEAF, 1.02), 1.0, side, finishes.handle))
     return Shape(base, (leaf, *levers))
-
-
-def _leaf(rng: np.random.Generator, form: str, rect: Rect, style: FrontStyle) -> Pieces:
-    if form == "flush":
-        return panel(rect, style)
-    kind = "glass" if form == "glazed" else pick(rng, "shaker raised")
-    looks = replace(style, panel=kind)  # type: ignore[arg-type]
-    cut = rect.z[0] + 0.42 * rect.height
-    parts = panel(Rect(rect.x, (rect.z[0], cut), rect.y), replace(looks, panel="shaker") if form == "glazed" else looks)
-    parts += panel(Rect(rect.x, (cut, rect.z[1]), rect.y), looks)
-    return group_pieces(parts, "leaf")
 
 
 def _door_lever(name: str, at: Axis3, outwards: float, side: float, finish: Material) -> Mover:

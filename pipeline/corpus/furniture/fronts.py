@@ -82,7 +82,11 @@ def _panel(rect: Rect, style: FrontStyle) -> Pieces:
         return pieces("front", box(rect.x, depth, rect.z, 0.0025), style.finish)
     if style.panel == "reeded":
         back = pieces("front", box(rect.x, (y + 0.007, y + t), rect.z, 0.002), style.finish)
-        return back + pieces("front_reeds", _reeds(rect, 0.007), style.finish)
+        count = min(18, max(4, round(rect.width / 0.028)))
+        pitch, turns = rect.width / count, np.linspace(math.pi, 2 * math.pi, 5)
+        across, depths = 0.46 * pitch * np.cos(turns), y + 0.007 + 0.007 * np.sin(turns)
+        reeds = [slab(np.stack([rect.x[0] + (i + 0.5) * pitch + across, depths], axis=1), rect.z) for i in range(count)]
+        return back + pieces("front_reeds", reeds, style.finish)
     if style.panel == "mirror":
         back = pieces("front", box(rect.x, (y + 0.005, y + t), rect.z, 0.002), style.finish)
         edge = 0.012
@@ -102,7 +106,13 @@ def _filling(inner: Rect, style: FrontStyle) -> Pieces:
     """Return what a frame holds."""
     y, t = inner.y, style.thickness
     if style.panel == "slats":
-        return pieces("front_slats", _louvres(inner, t), style.finish)
+        count = min(18, max(3, round(inner.height / 0.045)))
+        pitch = inner.height / count
+        middle, half = y + t / 2, 0.5 * t - 0.003
+        angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
+        levels = [inner.z[0] + (i + 0.5) * pitch for i in range(count)]
+        slats = [box(inner.x, around(0.003, middle), around(0.56 * pitch, z)).rotate("x", -angle, (0.0, middle, z)) for z in levels]
+        return pieces("front_slats", slats, style.finish)
     if style.panel in ("glass", "dark_glass"):
         parts = pieces("front_glass", box(inner.x, (y + 0.006, y + 0.012), inner.z), "glass" if style.panel == "glass" else "dark_glass")
         if style.panel == "glass" and inner.height > 0.7:  # a glazing bar
@@ -119,25 +129,6 @@ def _filling(inner: Rect, style: FrontStyle) -> Pieces:
         rings = [np.column_stack([o[:, 0], np.full(4, at), o[:, 1]]) for o, at in ((low, y + 0.009), (high, y + 0.002))]
         parts += pieces("front_field", stack(rings), style.finish)
     return parts
-
-
-def _louvres(inner: Rect, thickness: float) -> list[Solid]:
-    """Return tilted slats, one above the other."""
-    count = min(18, max(3, round(inner.height / 0.045)))
-    pitch = inner.height / count
-    middle, half = inner.y + thickness / 2, 0.5 * thickness - 0.003
-    angle = math.asin(min(0.8, max(0.0, half - 0.003) / (0.56 * pitch)))
-    heights = [inner.z[0] + (i + 0.5) * pitch for i in range(count)]
-    return [box(inner.x, around(0.003, middle), around(0.56 * pitch, z)).rotate("x", -angle, (0.0, middle, z)) for z in heights]
-
-
-def _reeds(rect: Rect, proud: float) -> list[Solid]:
-    """Return upright half-round strips side by side, `proud` [m] in front of the board."""
-    count = min(18, max(4, round(rect.width / 0.028)))
-    pitch = rect.width / count
-    turns = np.linspace(math.pi, 2 * math.pi, 5)
-    across, depth = 0.46 * pitch * np.cos(turns), rect.y + proud + proud * np.sin(turns)
-    return [slab(np.stack([rect.x[0] + (i + 0.5) * pitch + across, depth], axis=1), rect.z) for i in range(count)]
 
 
 def reach(handle: HandleStyle) -> float:
@@ -157,7 +148,11 @@ def handle(style: FrontStyle, rect: Rect, *, upright: bool, at: Spot, length: fl
         return ()
     if style.handle in ("knob", "ring"):
         part = "round_fixed_handle"
-        solids = stand_up(_round_grip(style.handle), (x, y, z))
+        solids = revolve([(0.006, 0.0), (0.0055, 0.010), (0.013, 0.018), (0.014, 0.022), (0.010, 0.026)], 10)
+        if style.handle == "ring":  # that drops from a rosette
+            drop = [s.translate((0.0, -0.021, 0.0)) for s in ring((0.021, 0.021), (0.0155, 0.0155), (0.010, 0.016), 12)]
+            solids = revolve([(0.015, 0.0), (0.013, 0.005), (0.006, 0.010)], 10) + drop
+        solids = stand_up(solids, (x, y, z))
     elif style.handle == "cup" and not upright:
         turns = np.linspace(0, math.pi / 2, 4)
         section = [(-0.022 * math.cos(t), 0.024 * math.sin(t) - 0.008) for t in turns] + [(0.0, -0.008)]
@@ -173,15 +168,6 @@ def handle(style: FrontStyle, rect: Rect, *, upright: bool, at: Spot, length: fl
     else:
         solids, group = _bar(style, (x, y, z), (0.0, half) if upright else (half, 0.0)), ""
     return pieces(name, solids, style.metal, part, group)
-
-
-def _round_grip(style: HandleStyle) -> list[Solid]:
-    """Return a knob, or a rosette with a drop ring, along z; turned by 90 degrees about x it stands on a front."""
-    if style == "knob":
-        return revolve([(0.006, 0.0), (0.0055, 0.010), (0.013, 0.018), (0.014, 0.022), (0.010, 0.026)], 10)
-    rosette = revolve([(0.015, 0.0), (0.013, 0.005), (0.006, 0.010)], 10)
-    drop = [s.translate((0.0, -0.021, 0.0)) for s in ring((0.021, 0.021), (0.0155, 0.0155), (0.010, 0.016), 12)]
-    return rosette + drop
 
 
 def _bar(style: FrontStyle, at: Axis3, along: Spot) -> list[Solid]:
@@ -263,10 +249,18 @@ def drawer(
     z1 = min(z0 + max(0.04, 0.74 * (cz1 - cz0)), cz1 - 0.008)
     wall = min(BOARD, 0.1 * (x1 - x0))
     boards = tray((x0, x1), (y0, y1), (z0, z1), wall)
-    grips, at = _drawer_grips(rect, style)
-    travel = round(0.82 * (y1 - y0), 3)
+    middle = rect.middle[0]
+    height = rect.middle[1] if rect.height < 0.3 else rect.z[1] - 0.08
+    if rect.width > 0.75 and style.handle in ("knob", "ring", "cup"):  # two on a wide front
+        spots = (("handle", middle - rect.width / 4), ("handle_2", middle + rect.width / 4))
+        grips = tuple(p for n, x in spots for p in handle(style, rect, upright=False, at=(x, height), length=0.1, name=n))
+    else:
+        share, most = (0.7, 0.9) if style.handle == "long" else (0.38, 0.40)
+        length = min(most, max(0.08, share * rect.width), 0.8 * rect.width)
+        grips = handle(style, rect, upright=False, at=(middle, height), length=length)
+    at = (middle, rect.y, rect.z[1] - LIP if style.handle == "groove" else height)
     parts = panel(rect, style) + pieces("drawer_box", boards, inside) + grips
-    return Mover(name, parts, "prismatic", (0, -1, 0), at, travel, "slider_drawer", "drawer", after=after)
+    return Mover(name, parts, "prismatic", (0, -1, 0), at, round(0.82 * (y1 - y0), 3), "slider_drawer", "drawer", after=after)
 
 
 def tray(x: Interval, y: Interval, z: Interval, wall: float) -> list[Solid]:
@@ -274,20 +268,6 @@ def tray(x: Interval, y: Interval, z: Interval, wall: float) -> list[Solid]:
     low = z[0] + 0.008
     sides = [box(span, y, (low, z[1])) for span in ((x[0], x[0] + wall), (x[1] - wall, x[1]))]
     return [box(x, y, (z[0], low)), *sides, box(inset(x, wall), (y[1] - wall, y[1]), (low, z[1]))]
-
-
-def _drawer_grips(rect: Rect, style: FrontStyle) -> tuple[Pieces, Axis3]:
-    """Return one handle in the middle, or two on a wide front, and where a hand takes hold."""
-    middle = rect.middle[0]
-    height = rect.middle[1] if rect.height < 0.3 else rect.z[1] - 0.08
-    at = (middle, rect.y, rect.z[1] - LIP if style.handle == "groove" else height)
-    if rect.width > 0.75 and style.handle in ("knob", "ring", "cup"):
-        quarter = rect.width / 4
-        grips = handle(style, rect, upright=False, at=(middle - quarter, height), length=0.1)
-        return grips + handle(style, rect, upright=False, at=(middle + quarter, height), length=0.1, name="handle_2"), at
-    share = 0.7 if style.handle == "long" else 0.38
-    length = min(0.9 if style.handle == "long" else 0.40, max(0.08, share * rect.width))
-    return handle(style, rect, upright=False, at=(middle, height), length=min(length, 0.8 * rect.width)), at
 
 
 def lid(name: str, parts: Pieces, hinge: tuple[float, float, float], upper: float, parent: str = "base") -> Mover:

@@ -19,13 +19,13 @@ def frame_boards(w: float, h: float, wide: float, y: Interval, bevel: float = 0.
     return frame(Rect((-x, x), (0.0, h), y[0]), Rect(around(x - wide), (wide, h - wide), y[0]), y, bevel)
 
 
-def picture(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def picture(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a framed print with a mount, a bare canvas, or a pair of prints."""
     back = d / 2
     pattern: Pattern = pick(rng, "art_blocks art_hills art_circles art_lines")  # type: ignore[assignment]
     art = replace(FINISHES[f"print_{rng.integers(6)}"], pattern=pattern)
     if form == "canvas":
-        return Shape(pieces("canvas", box(around(w / 2), (-back, back), (0.0, h), 0.003), art))
+        return pieces("canvas", box(around(w / 2), (-back, back), (0.0, h), 0.003), art)
     frame = finishes.timber if rng.random() < 0.5 else finishes.handle
     spans = [(-w / 2, w / 2)] if form == "framed" else [(-w / 2, -0.02 * w), (0.02 * w, w / 2)]
     parts: Pieces = ()
@@ -38,7 +38,7 @@ def picture(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
         inner = box(around(wide / 2 - rim - mount), (back - 0.011, back - 0.008), (rim + mount, h - rim - mount))
         parts += pieces(f"frame_{k}", [s.translate(at) for s in frame_boards(wide, h, rim, (-back, back))], frame)
         parts += pieces(f"mount_{k}", sheet.translate(at), "paper") + pieces(f"print_{k}", inner.translate(at), art)
-    return Shape(parts)
+    return parts
 
 
 def mirror(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -61,7 +61,7 @@ def mirror(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     return Shape(parts + pieces("rays", rays, frame))
 
 
-def clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round wall clock with a dial, or one with bare marks on a ring."""
     back, r = d / 2, w / 2
     at = (0, back, h / 2)
@@ -69,7 +69,7 @@ def clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
     if form == "dial":
         dial = "light_dial" if rng.random() < 0.7 else "dark_dial"
         parts = pieces("dial", stand_up([slab(circle(0.9 * r, 32), (0.0, 0.5 * d))], at), dial)
-        return Shape(parts + pieces("rim", stand_up(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), at), rim))
+        return parts + pieces("rim", stand_up(ring((r, 0.97 * r), (0.9 * r, 0.9 * r), (0.0, d), 32), at), rim)
     hub = stand_up(revolve([(0.2 * r, 0.0), (0.2 * r, 0.7 * d), (0.12 * r, d)], 20), at)
     hoop = stand_up(ring((0.86 * r, 0.86 * r), (0.8 * r, 0.8 * r), (0.0, 0.4 * d), 32), at)
     mark = box(around(0.02 * r), (back - 0.8 * d, back - 0.4 * d), (0.74 * r, r))
@@ -79,7 +79,7 @@ def clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
     spokes = [(_upright(0.2 * r, a, back - 0.15 * d, h / 2), _upright(0.8 * r, a, back - 0.15 * d, h / 2)) for a in turns(4)]
     parts = pieces("ring", hoop, rim) + pieces("hub", hub, rim)
     parts += pieces("spokes", [rod(*ends, 0.1 * d, n=6) for ends in spokes], rim) + pieces("marks", marks, rim)
-    return Shape(parts + pieces("hands", hands, Finish("marks", tint(rng, COLORS["charcoal"], 0.1), 0.5, density=900)))
+    return parts + pieces("hands", hands, Finish("marks", tint(rng, COLORS["charcoal"], 0.1), 0.5, density=900))
 
 
 def _upright(radius: float, angle: float, y: float, z: float) -> Vector:
@@ -88,7 +88,7 @@ def _upright(radius: float, angle: float, y: float, z: float) -> Vector:
     return (x, y, z + up)
 
 
-def television(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def television(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a flat television on a foot in the middle, or on two feet."""
     low = 0.06 * h
     panel = box(around(w / 2), (-0.015, 0.02), (low, h), 0.003)
@@ -99,10 +99,10 @@ def television(rng: np.random.Generator, form: str, w: float, d: float, h: float
     else:
         feet = [box(around(0.012, s * 0.36 * w), around(d / 2), (0.0, 0.012), 0.003) for s in (-1, 1)]
         feet += [box(around(0.01, s * 0.36 * w), (-0.01, 0.015), (0.012, low)) for s in (-1, 1)]
-    return Shape(pieces("panel", [panel, belly], "shell") + pieces("screen", glass, "screen") + pieces("feet", feet, "shell"))
+    return pieces("panel", [panel, belly], "shell") + pieces("screen", glass, "screen") + pieces("feet", feet, "shell")
 
 
-def photo_frame(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def photo_frame(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a framed photograph that leans back on a strut, upright or oblong."""
     paper = FINISHES[f"print_{rng.integers(6)}"]
     art = replace(paper, name="photo", roughness=0.4, pattern=pick(rng, "art_hills art_circles art_blocks"))  # type: ignore[arg-type]
@@ -112,10 +112,10 @@ def photo_frame(rng: np.random.Generator, form: str, w: float, d: float, h: floa
     boards = lean(frame_boards(w, h, rim, around(0.006, front)), 0.0, slope)
     sheet = lean([box(around(w / 2 - rim), (front - 0.001, front + 0.004), (rim, h - rim))], 0.0, slope)
     strut = lean([box(around(0.1 * w), (d / 2 - 0.008, d / 2), (0.0, 0.75 * h))], 0.0, -0.45 * d / h)
-    return Shape(pieces("frame", boards, frame) + pieces("photo", sheet, art) + pieces("strut", strut, "shell"))
+    return pieces("frame", boards, frame) + pieces("photo", sheet, art) + pieces("strut", strut, "shell")
 
 
-def candle(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def candle(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a pillar candle on a dish, one in a glass, or a thin one on a stick."""
     r = w / 2
     wax = Finish("wax", tint(rng, one_of(rng, PALETTES["wax"]), 0.08), 0.5, density=900)
@@ -123,7 +123,7 @@ def candle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     if form == "glass":
         body = slab(circle(0.86 * r, 16), (0.02 * h, 0.62 * h))
         glass = ring((r, r), (0.87 * r, 0.87 * r), (0.0, 0.9 * h), 12)
-        return Shape(pieces("wax", body, wax) + pieces("glass", glass, "clear_glass") + wick)
+        return pieces("wax", body, wax) + pieces("glass", glass, "clear_glass") + wick
     if form == "stick":
         stand = revolve([(r, 0.0), (0.9 * r, 0.04 * h), (0.2 * r, 0.09 * h), (0.16 * r, 0.42 * h)], 16)
         stand += revolve([(0.16 * r, 0.42 * h), (0.4 * r, 0.5 * h)], 12)
@@ -131,7 +131,7 @@ def candle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     else:
         stand = revolve([(0.8 * r, 0.0), (r, 0.05 * h), (0.95 * r, 0.08 * h)], 16)
         body = slab(circle(0.74 * r, 16), (0.08 * h, 0.94 * h), 0.004)
-    return Shape(pieces("stick" if form == "stick" else "dish", stand, finishes.handle) + pieces("wax", body, wax) + wick)
+    return pieces("stick" if form == "stick" else "dish", stand, finishes.handle) + pieces("wax", body, wax) + wick
 
 
 def tray(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -149,7 +149,7 @@ def tray(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
     return Shape(pieces("tray", solids, finish) + pieces("grips", grips, finishes.handle))
 
 
-def bottle(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def bottle(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bottle: of soap with a pump, of shampoo, of wine, of oil."""
     r = w / 2
     color = COLORS[pick(rng, "white sage blush ivory terracotta dusty_blue anthracite")]
@@ -158,7 +158,7 @@ def bottle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
         head = [rod((0, 0, 0.7 * h), (0, 0, 0.9 * h), 0.12 * r, n=8), slab(circle(0.34 * r, 10), (0.9 * h, h))]
         head.append(box((-0.9 * r, 0.0), around(0.1 * r), (0.93 * h, 0.98 * h)))
         soap = Finish("soap", tint(rng, color, 0.1), 0.3, density=900)
-        return Shape(pieces("body", body, soap) + pieces("pump", head, finishes.handle))
+        return pieces("body", body, soap) + pieces("pump", head, finishes.handle)
     if form == "shampoo":
         finish: Material = Finish("plastic", tint(rng, color, 0.1), 0.35, density=900)
         body = [slab(circle(r, 14, squash=0.62), z) for z in ((0.0, 0.25 * h), (0.6 * h, 0.86 * h))]
@@ -170,10 +170,10 @@ def bottle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
         body += revolve([(r, 0.48 * h), (r, 0.6 * h), (0.7 * r, 0.68 * h), (0.32 * r, 0.76 * h)], 14)
         top = pieces("neck", slab(circle(0.32 * r, 12), (0.76 * h, h), 0.002), finish)
         band = slab(circle(r, 14), (0.18 * h, 0.48 * h))
-    return Shape(pieces("body", body, finish) + top + pieces("label", band, "label"))
+    return pieces("body", body, finish) + top + pieces("label", band, "label")
 
 
-def canister(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def canister(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a jar for the kitchen: of glass with what it holds, or of pottery, with a lid."""
     r = w / 2
     lid = finishes.timber if rng.random() < 0.6 else finishes.handle
@@ -182,12 +182,12 @@ def canister(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
         food = Finish("food", tint(rng, one_of(rng, PALETTES["food"]), 0.15), 0.9, pattern="speckle", density=700)
         inside = slab(circle(0.9 * r, 16), (0.02 * h, 0.86 * h * float(rng.uniform(0.45, 0.9))))
         jar = ring((r, r), (0.91 * r, 0.91 * r), (0.0, 0.86 * h), 12)
-        return Shape(pieces("food", inside, food) + pieces("jar", jar, "clear_glass") + pieces("lid", top, lid))
+        return pieces("food", inside, food) + pieces("jar", jar, "clear_glass") + pieces("lid", top, lid)
     body = revolve([(0.9 * r, 0.0), (r, 0.04 * h), (r, 0.82 * h), (0.92 * r, 0.86 * h)], 16)
-    return Shape(pieces("jar", body, glaze(rng)) + pieces("lid", top, lid))
+    return pieces("jar", body, glaze(rng)) + pieces("lid", top, lid)
 
 
-def kettle(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def kettle(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a kettle with spout and handle: an electric one on its base, or one for the stove."""
     r = 0.5 * min(d, 0.75 * w)
     x = -w / 2 + r
@@ -204,10 +204,10 @@ def kettle(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
         side = [(w / 2 - 0.01, 0.86 * tall), (w / 2 - 0.012, 0.3 * tall)]
         bow, thick = [(x + 0.7 * r, 0.9 * tall), *side, (x + 0.9 * r, 0.16 * tall)], 0.011
     grip = tube(curve([(px, 0, z) for px, z in bow], 2), thick, 6)
-    return Shape(pieces("body", [*body, spout], finish) + pieces("lid", top, "shell") + pieces("grip", grip, "shell"))
+    return pieces("body", [*body, spout], finish) + pieces("lid", top, "shell") + pieces("grip", grip, "shell")
 
 
-def cutting_board(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def cutting_board(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a board that lies with a knife on it, or a block of knives."""
     timber = Finish("board", tint(rng, COLORS[pick(rng, "beech oak walnut bamboo")]), 0.5, pattern="grain", density=650)
     board = box(around(w / 2), around(d / 2), (0.0, 0.6 * h), 0.004)
@@ -218,10 +218,10 @@ def cutting_board(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     if form == "bread":
         loaf = cushion((-0.34 * w, 0.2 * w), (-0.42 * d, -0.02 * d), (0.6 * h, 0.6 * h + 0.075), 0.032, 3)
         parts += pieces("bread", loaf, Finish("crust", tint(rng, (0.42, 0.20, 0.06)), 0.9, pattern="speckle", density=300))
-    return Shape(parts)
+    return parts
 
 
-def fruit_bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def fruit_bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bowl of fruit: wide and low, or on a foot."""
     r = w / 2
     finish = Finish("turned_wood", tint(rng, COLORS["walnut"]), 0.5, pattern="grain", density=650) if rng.random() < 0.5 else glaze(rng)
@@ -234,7 +234,7 @@ def fruit_bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float
     for k, a in enumerate(turns(5, float(rng.uniform(0, 1)))):
         x, y, z = polar(0.52 * r, a, low + 0.42 * h + 0.5 * q)
         fruit += _fruit(rng, (x, y, z), q, k)
-    return Shape(pieces("bowl", body, finish) + fruit + _fruit(rng, (0.0, 0.0, h - q), q, 5))
+    return pieces("bowl", body, finish) + fruit + _fruit(rng, (0.0, 0.0, h - q), q, 5)
 
 
 def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, number: int) -> Pieces:
@@ -244,36 +244,36 @@ def _fruit(rng: np.random.Generator, at: tuple[float, float, float], r: float, n
     return pieces(f"fruit_{number}", solids, Finish("fruit", tint(rng, color, 0.2), 0.4, density=800))
 
 
-def toy(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def toy(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a toy: a bear that sits, a ball, a car, or a tower of blocks."""
     bright = [Finish(f"paint_{n}", tint(rng, COLORS[n], 0.1), 0.35, density=300) for n in ("coral", "sky", "lemon", "mint")]
     if form == "ball":
         r = min(w, d, h) / 2
         profile = [(0.38 * r, -0.92 * r), (0.8 * r, -0.6 * r), (r, 0.0), (0.8 * r, 0.6 * r), (0.38 * r, 0.92 * r)]
-        return Shape(pieces("ball", [s.translate((0, 0, 0.92 * r)) for s in revolve(profile, 16)], one_of(rng, bright)))
+        return pieces("ball", [s.translate((0, 0, 0.92 * r)) for s in revolve(profile, 16)], one_of(rng, bright))
     if form == "blocks":
         b = h / 3
         parts: Pieces = ()
         for k, (x, y, level) in enumerate(((-0.6 * b, 0.0, 0), (0.6 * b, 0.1 * b, 0), (0.0, 0.0, 1), (0.05 * b, 0.0, 2))):
             block = box(around(b / 2, x), around(b / 2, y), (level * b, (level + 1) * b - 0.0005), 0.003)
             parts += pieces(f"block_{k}", block, bright[k])
-        return Shape(parts)
+        return parts
     if form == "car":
         body = [cushion(around(w / 2), around(0.4 * d), (0.16 * h, 0.6 * h), 0.02, 2)]
         body.append(cushion((-0.28 * w, 0.3 * w), around(0.34 * d), (0.6 * h, h), 0.02, 2))
         wheel = slab(circle(0.18 * h, 12), around(0.06 * d))
         wheels = [s for x, y in corners(0.3 * w, 0.42 * d) for s in stand_up([wheel], (x, y, 0.18 * h))]
-        return Shape(pieces("body", body, one_of(rng, bright)) + pieces("wheels", wheels, "shell"))
+        return pieces("body", body, one_of(rng, bright)) + pieces("wheels", wheels, "shell")
     fur = Finish("fur", tint(rng, (0.36, 0.22, 0.10) if rng.random() < 0.6 else (0.66, 0.58, 0.48)), 0.95, pattern="boucle", density=80)
     bear = [pillow(around(0.26 * w), (-0.2 * d, 0.35 * d), (0.0, 0.58 * h), 3)]
     bear.append(pillow(around(0.24 * w), around(0.26 * d), (0.52 * h, 0.95 * h), 3))
     bear += [cushion(around(0.07 * w, s * 0.17 * w), (-0.03 * d, 0.05 * d), (0.84 * h, h), 0.012, 2) for s in (-1, 1)]  # ears
     bear += [cushion(around(0.1 * w, s * 0.32 * w), (-0.25 * d, 0.05 * d), (0.22 * h, 0.5 * h), 0.025, 2) for s in (-1, 1)]  # arms
     bear += [cushion(around(0.11 * w, s * 0.24 * w), (-0.5 * d, 0.0), (0.0, 0.2 * h), 0.02, 2) for s in (-1, 1)]  # legs
-    return Shape(pieces("bear", bear, fur))
+    return pieces("bear", bear, fur)
 
 
-def pen_cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def pen_cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a cup with pens in it, round or square."""
     r, tall = w / 2, 0.55 * h
     cup = slab(circle(r, 14), (0.0, tall)) if form == "round" else box((-r, r), (-r, r), (0.0, tall), 0.003)
@@ -282,24 +282,24 @@ def pen_cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
         pen = rod(polar(0.4 * r, a, tall), polar(0.8 * r, a, h * float(rng.uniform(0.86, 1.0))), 0.0045, n=6)
         ink = tint(rng, COLORS[pick(rng, "black navy coral mustard emerald")])
         parts += pieces(f"pen_{k}", pen, Finish("pen", ink, 0.4, density=900))
-    return Shape(parts)
+    return parts
 
 
-def alarm_clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def alarm_clock(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build an alarm clock: a round one on four feet, or a box with figures."""
     if form == "box":
         case = box(around(w / 2), (-d / 2 + 0.002, d / 2), (0.0, h), 0.006)
         figures = box(around(0.42 * w), (-d / 2, -d / 2 + 0.002), (0.2 * h, 0.8 * h))
-        return Shape(pieces("case", case, finishes.timber) + pieces("figures", figures, "figures"))
+        return pieces("case", case, finishes.timber) + pieces("figures", figures, "figures")
     r = min(w, 0.86 * h) / 2
     z = h - r
     body = stand_up([slab(circle(r, 20), (0.0, 0.7 * d))], (0, 0.35 * d, z))
     body += [rod((s * 0.6 * r, t * 0.3 * d, 0.0), (s * 0.45 * r, t * 0.2 * d, z - 0.8 * r), 0.006, n=6) for s, t in corners(1, 1)]
     dial = stand_up([slab(circle(0.88 * r, 20), (0.0, 0.004))], (0, -0.35 * d, z))
-    return Shape(pieces("case", body, finishes.handle) + pieces("dial", dial, "light_dial"))
+    return pieces("case", body, finishes.handle) + pieces("dial", dial, "light_dial")
 
 
-def tissue_box(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def tissue_box(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a box of tissues, oblong or a cube, with one drawn out."""
     x = w / 2 if form == "flat" else min(w, d) / 2
     finish = finishes.timber
@@ -307,10 +307,10 @@ def tissue_box(rng: np.random.Generator, form: str, w: float, d: float, h: float
         finish = Finish("card", tint(rng, COLORS[pick(rng, "white sage blush dusty_blue greige")]), 0.7, density=300)
     body = box((-x, x), around(d / 2), (0.0, 0.7 * h), 0.003)
     sheet = blades(np.array([(0, 0, 0.69 * h), (0.004, 0, 0.69 * h)]), np.array([(-0.02, 0.006, h), (0.025, -0.006, 0.94 * h)]), 0.07)
-    return Shape(pieces("box", body, finish) + pieces("tissue", sheet, "paper"))
+    return pieces("box", body, finish) + pieces("tissue", sheet, "paper")
 
 
-def coat_hooks(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def coat_hooks(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a board with hooks, a coat or a bag on some of them; the back is at the wall (+y)."""
     back = d / 2
     count = max(4, round(w / 0.14))
@@ -328,10 +328,10 @@ def coat_hooks(rng: np.random.Generator, form: str, w: float, d: float, h: float
         bag += [box(around(0.006, x + s * 0.05), (-0.005, 0.005), (0.5 * h, h - 0.06)) for s in (-1, 1)]
         bag.append(box(around(0.056, x), (-0.005, 0.005), (h - 0.06, h - 0.045)))
         parts += pieces(f"bag_{k}", bag, Finish("coat", color, 0.9, pattern="weave", density=200))
-    return Shape(parts)
+    return parts
 
 
-def potted_herb(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def potted_herb(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a small plant in a pot: a succulent's rosette, a tuft of herbs, or a trailing one."""
     tall, count, rise = {"succulent": (0.62 * h, 14, 0.6), "herb": (0.45 * h, 26, 1.0), "grass": (0.4 * h, 22, 1.0)}[form]
     r = 0.36 * w
@@ -346,7 +346,7 @@ def potted_herb(rng: np.random.Generator, form: str, w: float, d: float, h: floa
     if form == "herb":
         roots = tips * (0.55, 0.55, 1.0) - (0.0, 0.0, 0.03)
         stems = [rod((0.2 * x, 0.2 * y, tall), (x, y, z), 0.002, n=4) for x, y, z in roots[::3].tolist()]
-        return Shape(parts + pieces("stems", stems, green) + pieces("leaves", blades(roots, tips, 0.32 * w), green))
+        return parts + pieces("stems", stems, green) + pieces("leaves", blades(roots, tips, 0.32 * w), green)
     roots = np.column_stack([0.2 * r * np.cos(angle), 0.2 * r * np.sin(angle), np.full(count, tall)])
     width, thick = (0.22 * w, 0.014) if form == "succulent" else (0.06 * w, 0.003)
-    return Shape(parts + pieces("leaves", blades(roots, tips, width, thick=thick), green))
+    return parts + pieces("leaves", blades(roots, tips, width, thick=thick), green)

@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import curve, tube, turns, wall
 from pipeline.corpus.furniture.finishes import PROFILES, Finish, Finishes, Material, cane, one_of, tint
 from pipeline.corpus.furniture.intervals import Interval, Spot, around, corners, polar
-from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, box, circle, revolve, ring, rod, slab, stand_up
 
 WALL = 0.006
@@ -46,7 +46,15 @@ def shade(
     cover = covers.get(kind, "shade_cloth")
     if cover == "shade_cloth" and rng.random() < 0.3:
         cover = Finish("shade_linen", tint(rng, (0.62, 0.52, 0.38)), 0.9, pattern="weave", density=150)
-    return pieces("shade", _walls(kind, profile, at, n), cover) + _fittings(radius, profile[-1][0], z, at, metal)
+    parts, top, high, tall = pieces("shade", _walls(kind, profile, at, n), cover), profile[-1][0], z[1], z[1] - z[0]
+    if top > 0.05:  # spokes carry it
+        middle = np.array([*at, high - 0.03 * tall - 0.004])
+        spokes = [rod(middle - s * np.array(polar(top - 0.5 * WALL, 0.3, 0)), middle, 0.0025, n=5) for s in (-1, 1)]
+        parts += pieces("spider", spokes, metal)
+    if tall > 0.16 and radius > 0.06:
+        parts += pieces("socket", revolve([(0.014, high - 0.45 * tall), (0.014, high - 0.02 * tall)], 8, at), metal)
+        parts += bulb(high - 0.45 * tall - 0.07, 0.07, at)
+    return parts
 
 
 def _ball(finishes: Finishes, kind: str, radius: float, z: Interval, at: Spot, n: int) -> Pieces:
@@ -76,21 +84,6 @@ def _walls(kind: str, profile: list[Spot], at: Spot, n: int) -> list[Solid]:
             grow = np.where(np.arange(8) < 4, r0, r1) / (0.5 * (r0 + r1))
             walls.append(Solid(stave.vertices * np.column_stack([grow, grow, np.ones(8)]), stave.faces).translate((*at, 0.0)))
     return walls
-
-
-def _fittings(radius: float, top: float, z: Interval, at: Spot, metal: Material) -> Pieces:
-    """Build the spokes that carry an open shade whose upper rim has radius `top`, its socket and its bulb, where there is room for them."""
-    low, high = z
-    tall = high - low
-    parts: Pieces = ()
-    if top > 0.05:
-        middle = np.array([*at, high - 0.03 * tall - 0.004])
-        spokes = [rod(middle - s * np.array(polar(top - 0.5 * WALL, 0.3, 0)), middle, 0.0025, n=5) for s in (-1, 1)]
-        parts += pieces("spider", spokes, metal)
-    if tall > 0.16 and radius > 0.06:
-        parts += pieces("socket", revolve([(0.014, high - 0.45 * tall), (0.014, high - 0.02 * tall)], 8, at), metal)
-        parts += bulb(high - 0.45 * tall - 0.07, 0.07, at)
-    return parts
 
 
 def _lantern(finishes: Finishes, radius: float, z: Interval) -> Pieces:
@@ -126,45 +119,34 @@ def _cage(finishes: Finishes, radius: float, z: Interval) -> Pieces:
     return parts + bulb(high - 0.12 * tall - 0.5 * tall, 0.5 * tall, (0.0, 0.0))
 
 
-def turn_along_y(shape: Shape) -> Shape:
+def turn_along_y(parts: Pieces) -> Pieces:
     """Return what was built along x along y."""
-    return Shape(tuple(replace(p, solid=p.solid.rotate("z", math.pi / 2)) for p in shape.base))
+    return tuple(replace(p, solid=p.solid.rotate("z", math.pi / 2)) for p in parts)
 
 
-def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a shade on a pole or on three legs, or globes on a stem."""
-    r = w / 2
-    if form == "globes":
-        return Shape(_stem_of_globes(rng, w, d, h, finishes))
+def floor_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a shade on a pole or on three legs."""
+    r, metal = w / 2, finishes.handle
     kind = shade_word(rng, finishes, "globe cage lantern paper crystal mushroom cylinder")
     tall = min(0.26 * h, 0.95 * w)
-    parts = shade(rng, finishes, kind, r, (h - tall, h))
-    return Shape(parts + (_tripod(rng, w, d, h, tall, finishes) if form == "tripod" else _pole(rng, w, d, h, tall, finishes)))
-
-
-def _tripod(rng: np.random.Generator, w: float, d: float, h: float, tall: float, finishes: Finishes) -> Pieces:
-    """Build three legs, the hub on them, sometimes a shelf between them; the shade above is `tall`."""
-    r, metal = w / 2, finishes.handle
-    top = h - tall
-    ends = [polar(0.95 * r, a) for a in turns(3, math.pi / 2)]
-    parts = pieces("legs", [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends], finishes.timber)
-    if rng.random() < 0.5:
-        parts += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), finishes.timber)
-    hub = revolve([(0.05, top - 0.035), (0.05, top - 0.02), (0.012, top - 0.012), (0.008, top + 0.3 * tall)], 14)
-    return parts + pieces("hub", hub, metal)
-
-
-def _pole(rng: np.random.Generator, w: float, d: float, h: float, tall: float, finishes: Finishes) -> Pieces:
-    """Build a round foot with a pole under a shade that is `tall`, turned where the style likes ornament."""
-    r, metal = w / 2, finishes.handle
+    parts, top = shade(rng, finishes, kind, r, (h - tall, h)), h - tall
+    if form == "tripod":  # its hub carries the shade, sometimes there is a shelf between its legs
+        ends = [polar(0.95 * r, a) for a in turns(3, math.pi / 2)]
+        legs = [rod((x, y, 0), (0.03 * x / r, 0.03 * y / r, top - 0.035), 0.011, 0.015, 8) for x, y in ends]
+        parts += pieces("legs", legs, finishes.timber)
+        if rng.random() < 0.5:
+            parts += pieces("shelf", slab(circle(0.42 * r, 20), (0.42 * top, 0.42 * top + 0.012)), finishes.timber)
+        hub = revolve([(0.05, top - 0.035), (0.05, top - 0.02), (0.012, top - 0.012), (0.008, top + 0.3 * tall)], 14)
+        return parts + pieces("hub", hub, metal)
     if finishes.style.ornament > 0.5:
         steps = [(0.6 * r, 0.0), (0.6 * r, 0.03), (0.05, 0.05), (0.02, 0.12), (0.032, 0.3), (0.016, 0.36 * h), (0.03, 0.42 * h)]
-        steps += [(0.016, 0.46 * h), (0.02, 0.6 * h), (0.01, h - tall), (0.008, h - 0.7 * tall)]
-        return pieces("pole", revolve(steps, 16), finishes.timber if rng.random() < 0.5 else metal)
-    return pieces("pole", revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20), metal)
+        steps += [(0.016, 0.46 * h), (0.02, 0.6 * h), (0.01, top), (0.008, h - 0.7 * tall)]
+        return parts + pieces("pole", revolve(steps, 16), finishes.timber if rng.random() < 0.5 else metal)
+    pole = revolve([(0.62 * r, 0.0), (0.62 * r, 0.018), (0.013, 0.028), (0.010, h - 0.7 * tall)], 20)
+    return parts + pieces("pole", pole, metal)
 
 
-def _stem_of_globes(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def stem_of_globes(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build three lit globes on arms around a stem."""
     r, metal = w / 2, finishes.handle
     parts = pieces("foot", revolve([(0.62 * r, 0.0), (0.62 * r, 0.02), (0.014, 0.03), (0.011, h - 0.02)], 20), metal)
@@ -178,7 +160,7 @@ def _stem_of_globes(rng: np.random.Generator, w: float, d: float, h: float, fini
     return parts
 
 
-def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a small shade on an arm, a lit bar, a globe on a plate, or candles on swung arms; the back is at the wall."""
     metal = finishes.handle
     back = d / 2
@@ -189,14 +171,14 @@ def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float,
         light = rod((0, y, 0.03 * h), (0, y, 0.97 * h), 0.85 * r, n=14)
         caps = [rod((0, y, z), (0, y, z + 0.03 * h), r, n=14) for z in (0.0, 0.97 * h)]
         arm = box((-0.012, 0.012), (y + 0.85 * r, back - 0.018), (0.48 * h, 0.52 * h), 0.002)
-        return Shape(pieces("plate", plate, metal) + pieces("caps", [*caps, arm], metal) + pieces("tube", light, "glow"))
+        return pieces("plate", plate, metal) + pieces("caps", [*caps, arm], metal) + pieces("tube", light, "glow")
     if form == "globe":
         r = min(w / 2, 0.42 * d)
         y = -d / 2 + r
         disc = stand_up([slab(circle(0.5 * w, 20, squash=h / w), (0.0, 0.016), 0.003)], (0, back, 0.5 * h))
         neck = rod((0, back - 0.016, 0.5 * h), (0, y + 0.95 * r, 0.5 * h), 0.009, n=8)
         globe = shade(rng, finishes, "globe", r, around(min(r, 0.5 * h), 0.5 * h), (0.0, y), 18)
-        return Shape(pieces("plate", disc, metal) + pieces("neck", neck, metal) + globe)
+        return pieces("plate", disc, metal) + pieces("neck", neck, metal) + globe
     r = min(w / 2, 0.4 * d) if form == "shade" else min(0.24 * w, 0.4 * d)
     wide = 0.2 * w if form != "shade" or r > 0.4 * w else 0.5 * w
     parts = pieces("plate", box((-wide, wide), (back - 0.016, back), (0.0, 0.7 * h), 0.004), metal)
@@ -205,24 +187,22 @@ def wall_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float,
         swing = curve([(0.1 * x, back - 0.016, 0.34 * h), (0.6 * x, 0.5 * (y + back), 0.22 * h), (x, y, 0.26 * h), (x, y, 0.42 * h)], 2)
         parts += pieces("arm", tube(swing, 0.0065, 6), metal)
         parts += shade(rng, finishes, "pleated" if finishes.style.ornament > 0.5 else "drum", r, (h - 0.55 * h, h), (x, y), 16)
-    return Shape(parts)
+    return parts
 
 
-def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a shade on a foot of pottery, turned wood or metal, a globe, a mushroom, or a desk lamp with a jointed arm."""
+def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a shade on a foot of pottery, turned wood or metal, a globe, or a mushroom."""
     metal = finishes.handle
     r = w / 2
-    if form == "desk":
-        return turn_along_y(table_lamp(rng, form, d, w, h, finishes)) if d > w else Shape(_desk_lamp(rng, w, d, h, finishes))
     if form == "mushroom":
         foot = revolve([(0.5 * r, 0.0), (0.42 * r, 0.1 * h), (0.34 * r, 0.45 * h), (0.4 * r, 0.6 * h)], 20)
         bend = curve([(0.97 * r, 0.6 * h), (r, 0.63 * h), (0.92 * r, 0.78 * h), (0.66 * r, 0.93 * h), (0.25 * r, h)], 2)
         cap = revolve(bend.tolist(), 28)
-        return Shape(pieces("stem", foot, finishes.front) + pieces("cap", cap, "glow" if rng.random() < 0.5 else finishes.front))
+        return pieces("stem", foot, finishes.front) + pieces("cap", cap, "glow" if rng.random() < 0.5 else finishes.front)
     if form == "globe":
         foot = revolve([(0.6 * r, 0.0), (0.6 * r, 0.02), (0.3 * r, 0.03), (0.2 * r, h - 1.95 * r)], 20)
         base = pieces("foot", foot, metal if rng.random() < 0.6 else finishes.stone)
-        return Shape(base + shade(rng, finishes, "globe", r, (max(0.05, h - 1.95 * r), h)))
+        return base + shade(rng, finishes, "globe", r, (max(0.05, h - 1.95 * r), h))
     tall = 0.42 * h
     stem = h - tall
     belly = curve([(0.45, 0.0), (0.5, 0.03), (0.62, 0.2), (0.5, 0.4), (0.16, 0.52)], 2).tolist()
@@ -231,11 +211,13 @@ def table_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float
     profile += [(0.01, min(0.54 * h, stem - 0.01)), (0.006, h - 0.45 * tall - 0.072 if tall > 0.16 else h - 0.5 * tall)]
     finish = finishes.timber if rng.random() < 0.4 else replace(finishes.front, name="pottery", roughness=0.2)
     kind = shade_word(rng, finishes, "globe cage lantern paper crystal mushroom cylinder dome")
-    return Shape(pieces("foot", revolve(profile, 20), finish) + shade(rng, finishes, kind, r, (stem, h)))
+    return pieces("foot", revolve(profile, 20), finish) + shade(rng, finishes, kind, r, (stem, h))
 
 
-def _desk_lamp(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
-    """Build a round foot, an arm with an elbow and a cone at its end, along x."""
+def desk_lamp(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a round foot, an arm with an elbow and a cone at its end, along the longer side."""
+    if d > w:
+        return turn_along_y(desk_lamp(rng, form, d, w, h, finishes))
     q = min(0.5 * d, 0.34 * w)
     x0, tip = -w / 2 + q, w / 2 - 0.28 * d
     foot = revolve([(q, 0.0), (q, 0.014), (0.2 * q, 0.022)], 20, (x0, 0.0))

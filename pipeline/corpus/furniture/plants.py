@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pipeline.corpus.furniture.bent import blades, curve, tube, turns
 from pipeline.corpus.furniture.finishes import FINISHES, PROFILES, Finish, Finishes, Material, draw_material, tint
 from pipeline.corpus.furniture.intervals import Spot, polar
-from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, circle, ring, rod, slab
 
 GOLDEN = math.pi * (3 - math.sqrt(5))
@@ -18,13 +18,13 @@ GOLDEN = math.pi * (3 - math.sqrt(5))
 Points = NDArray[np.float64]
 
 
-def plant(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def plant(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bush, a palm, a monstera, a fiddle fig, or an olive tree in a pot."""
     pot_r = min(0.3 * min(w, d), 0.2)
     pot, crown = _pot(rng, pot_r, min(0.34 * h, 0.36, 1.9 * pot_r), finishes)
     grow = {"bush": _bush, "palm": _palm, "monstera": _monstera, "fig": _fig, "olive": _olive}[form]
     green = Finish("leaf", tint(rng, FINISHES["leaf"].color, 0.28), 0.55, pattern="leaf", density=300)
-    return Shape(pot + grow(rng, Growth((w / 2, d / 2), crown, h, pot_r, green)))
+    return pot + grow(rng, Growth((w / 2, d / 2), crown, h, pot_r, green))
 
 
 def _pot(rng: np.random.Generator, r: float, h: float, finishes: Finishes) -> tuple[Pieces, float]:
@@ -114,20 +114,8 @@ def _palm(rng: np.random.Generator, g: Growth) -> Pieces:
     return g.parts("stems", g.green, 0.022 + 0.02 * g.small, belly=0.35, n=4)
 
 
-def _big_leaf(g: Growth, base: Points, direction: float, droop: float, size: float) -> None:
-    """Add one large split leaf: a fan of lobes about its midrib."""
-    u = np.array(polar(1.0, direction, 0.0))
-    side = np.array([-u[1], u[0], 0.0])
-    fall = np.array([0, 0, -droop])
-    for share, spread, reach in ((0.0, 0.9, 0.55), (0.22, 0.8, 0.62), (0.44, 0.66, 0.56), (0.62, 0.45, 0.46)):
-        p = base + size * share * (u + 0.4 * fall)
-        for q in (-1, 1):
-            g.leaf(p, p + size * reach * (q * side * spread + u * (0.45 + 0.3 * share) + fall * (0.45 + share)))
-    g.leaf(base + size * 0.5 * (u + 0.4 * fall), base + size * (1.08 * u + 1.0 * fall))
-
-
 def _monstera(rng: np.random.Generator, g: Growth) -> Pieces:
-    """Long stalks, each with one large leaf split into lobes."""
+    """Long stalks, each with one large leaf split into lobes: a fan of them about its midrib."""
     count, size = 9, 0.62 * g.small
     for k in range(count):
         a, out = k * GOLDEN, math.sqrt((k + 0.5) / count)
@@ -135,7 +123,13 @@ def _monstera(rng: np.random.Generator, g: Growth) -> Pieces:
         end = np.array([*((g.half - 0.8 * size) * out * polar(1.0, a)), z])
         path = curve([g.root(a, 0.3), np.array([*(0.35 * end[:2]), 0.6 * z + 0.4 * g.crown]), end], 2)
         g.stems += tube(path, np.linspace(0.008, 0.004, len(path)), 6)
-        _big_leaf(g, end, a, 0.35 + 0.3 * out, size)
+        u = np.array(polar(1.0, a, 0.0))
+        side, fall = np.array([-u[1], u[0], 0.0]), np.array([0, 0, -(0.35 + 0.3 * out)])
+        for share, spread, reach in ((0.0, 0.9, 0.55), (0.22, 0.8, 0.62), (0.44, 0.66, 0.56), (0.62, 0.45, 0.46)):
+            p = end + size * share * (u + 0.4 * fall)
+            for q in (-1, 1):
+                g.leaf(p, p + size * reach * (q * side * spread + u * (0.45 + 0.3 * share) + fall * (0.45 + share)))
+        g.leaf(end + size * 0.5 * (u + 0.4 * fall), end + size * (1.08 * u + 1.0 * fall))
     return g.parts("stems", g.green, 0.3 * size)
 
 

@@ -9,7 +9,7 @@ from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, prism, sheet
 from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of
 from pipeline.corpus.furniture.intervals import around, between, corners, polar, split
 from pipeline.corpus.furniture.legs import METAL, draw_kind, inside, leg_finish, legs
-from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, at_height, beam, board, box, circle, cushion, revolve, rod, slab, stand_up
 from pipeline.corpus.furniture.textiles import piping, seat_cushion, tufted_panel, upright_pad
 
@@ -37,20 +37,15 @@ class Frame:
         return box(around(self.x - inset), around(half, self.y), (self.low + a * rise, self.low + b * rise), 0.003)
 
 
-def posts(frame: Frame, *, turned: bool = False) -> list[Solid]:
-    """Return the two posts that rise from the seat."""
-    t, xs = frame.thick, [s * (frame.x - frame.thick / 2) for s in (-1, 1)]
-    ends = [((x, frame.y, frame.low), (x, frame.y, frame.high)) for x in xs]
-    return [rod(*span, 0.5 * t, 0.4 * t, 8) if turned else beam(*span, 0.86 * t, 0.86 * t, 1.15) for span in ends]
-
-
 def back(rng: np.random.Generator, kind: str, frame: Frame, finishes: Finishes) -> Pieces:
     """Return a back of one kind: slat, ladder, panel, splat, spindle, cane, cross, pad."""
     t, rise = frame.thick, frame.high - frame.low
     if kind == "pad":
         pad = upright_pad(rng, finishes, around(frame.x), (frame.y - 0.035, frame.y + 0.03), (frame.low + 0.08 * rise, frame.high))
         return pieces("back_pad", lean(pad, frame.low, frame.slope), finishes.soft)
-    wood = posts(frame, turned=kind in ("spindle", "ladder") and finishes.style.ornament > 0.3)
+    ends = [((x, frame.y, frame.low), (x, frame.y, frame.high)) for x in around(frame.x - t / 2)]
+    turned = kind in ("spindle", "ladder") and finishes.style.ornament > 0.3
+    wood = [rod(*span, 0.5 * t, 0.4 * t, 8) if turned else beam(*span, 0.86 * t, 0.86 * t, 1.15) for span in ends]
     wood.append(frame.bar(0.86, 1.0, t))
     if kind in RAILS:
         wood += [frame.bar(low, high, t, deep) for low, high, deep in RAILS[kind]]
@@ -99,13 +94,8 @@ def _cross(frame: Frame) -> list[Solid]:
     return bars
 
 
-def dining_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a chair: framed (wood, upholstered, spindle, cafe), a shell, a wishbone, or a cantilever."""
-    build = {"shell": _shell_chair, "wishbone": _wishbone, "cantilever": _cantilever}.get(form)
-    return Shape(build(rng, w, d, h, finishes) if build else _frame_chair(rng, form, w, d, h, finishes))
-
-
-def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def dining_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a chair of four legs and a back: of wood, upholstered, with spindles, or of a cafe."""
     seat = min(0.47, 0.56 * h)
     x, y = w / 2, d / 2
     thick = 0.034 * finishes.style.slim
@@ -145,7 +135,7 @@ def _frame_chair(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     return parts
 
 
-def _shell_chair(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def shell_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bent shell of plywood, plastic or cloth on four legs, a wire base, or a swivel foot."""
     seat, x, y = min(0.46, 0.55 * h), w / 2, d / 2
     soft = rng.random() < 0.45
@@ -172,7 +162,7 @@ def _shell_chair(rng: np.random.Generator, w: float, d: float, h: float, finishe
     return parts + pieces("legs", feet, finish) + pieces("plate", plate, finishes.handle)
 
 
-def _wishbone(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def wishbone_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round crest that becomes the arms, on posts, with a forked splat and a woven seat."""
     seat, x, y, wood = min(0.45, 0.55 * h), w / 2, d / 2, finishes.timber
     r = 0.016
@@ -194,7 +184,7 @@ def _wishbone(rng: np.random.Generator, w: float, d: float, h: float, finishes: 
     return parts + pieces("seat", slab(quad, (seat - 0.012, seat + 0.008), 0.004), "cord")
 
 
-def _cantilever(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def cantilever_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Bent steel from the floor over the front up to the seat and the back, with cane, leather or cloth between."""
     seat, x, y = min(0.46, 0.56 * h), w / 2 - TUBE, d / 2
     side = [(y - 0.03, TUBE), (-y + 0.06, TUBE), (-y + TUBE, 0.06), (-y + TUBE, seat - 0.08), (-y + 0.06, seat - 0.02)]
@@ -210,7 +200,7 @@ def _cantilever(rng: np.random.Generator, w: float, d: float, h: float, finishes
     return parts + pieces("back", lean([pad], seat + 0.02, slope), panel)
 
 
-def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build an official's hat chair with a yoke, or a rose chair with a low square back."""
     seat = min(0.5, 0.55 * h)
     x, y = 0.5 * w - 0.03, 0.5 * d - 0.03
@@ -223,31 +213,26 @@ def chinese_chair(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     apron = [box(around(x - 0.02), around(0.006, t * y), (seat - 0.09, under), 0.002) for t in (-1, 1)]
     apron += [box(around(0.006, s * x), around(y - 0.02), (seat - 0.08, under), 0.002) for s in (-1, 1)]
     parts += pieces("apron", apron, wood)
-    upper, top = _yoke(form, x, y, seat, seat + (0.5 if form != "rose" else 0.62) * (h - seat), h)
-    splat = box((-0.085, 0.085), around(0.007, y), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
-    parts += pieces("frame", upper, wood) + pieces("splat", splat, wood)
-    if rng.random() < 0.55:
-        cord = finishes.second if rng.random() < 0.4 else None
-        parts += seat_cushion(around(0.84 * x), (-0.86 * y, 0.8 * y), (seat + 0.0005, seat + 0.045), 0.02, finishes.soft, cord, 0.008)
-    return Shape(parts)
-
-
-def _yoke(form: str, x: float, y: float, seat: float, arm: float, h: float) -> tuple[list[Solid], float]:
-    """Build the posts, arms and top rail of an official's hat chair or a rose chair; returns them with the height of the posts."""
-    r = 0.0145
+    r, arm = 0.0145, seat + (0.5 if form != "rose" else 0.62) * (h - seat)
     top = h - 0.045 if form == "official" else h - 2 * r
     upper = [rod((s * x, y, seat), (s * x, y, top), 0.016, 0.014, 10) for s in (-1, 1)]
     upper += [rod((s * x, -y, seat), (s * x, -y, arm - r), 0.015, n=8) for s in (-1, 1)]
     upper += [rod((s * x, -y - 0.03, arm), (s * x, y - 0.016, arm + 0.015), r, n=8) for s in (-1, 1)]
     if form == "official":
         bow = ((-x - 0.03, 0.04), (-0.5 * x, 0.028), (0, 0.02), (0.5 * x, 0.028), (x + 0.03, 0.04))
-        return upper + tube(curve([(px, y, h - drop) for px, drop in bow], 2), 0.017, 8), top
-    upper += [rod((-x, y, h - r), (x, y, h - r), r, n=8)]
-    upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
-    return upper, top
+        upper += tube(curve([(px, y, h - drop) for px, drop in bow], 2), 0.017, 8)
+    else:
+        upper.append(rod((-x, y, h - r), (x, y, h - r), r, n=8))
+        upper += [rod((-x + 0.016, y, z), (x - 0.016, y, z), 0.009, n=8) for z in (seat + 0.09, seat + 0.62 * (top - seat))]
+    splat = box((-0.085, 0.085), around(0.007, y), (seat, top - 0.004 if form != "rose" else seat + 0.6 * (top - seat)), 0.003)
+    parts += pieces("frame", upper, wood) + pieces("splat", splat, wood)
+    if rng.random() < 0.55:
+        cord = finishes.second if rng.random() < 0.4 else None
+        parts += seat_cushion(around(0.84 * x), (-0.86 * y, 0.8 * y), (seat + 0.0005, seat + 0.045), 0.02, finishes.soft, cord, 0.008)
+    return parts
 
 
-def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round upholstered stool, one with a low curved back, or a drum with a skirt."""
     seat = h if h < 0.56 else min(0.48, 0.6 * h)
     low, squash = seat - 0.11, d / w
@@ -268,10 +253,10 @@ def dressing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: f
         bow = arc((0.0, 0.0), 0.467 * w, 0.06 * math.pi, 0.94 * math.pi, 10, squash)
         rise = 0.55 + 0.45 * np.sin(np.linspace(0.1, math.pi - 0.1, 11))
         parts += pieces("back", wall(bow, 0.06, low, seat + (h - seat) * rise / rise.max(), 0.025), finishes.soft)
-    return Shape(parts)
+    return parts
 
 
-def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a high seat on four legs or on a column; a foot rest goes around it."""
     seat = h if h < 0.85 else 0.72 * h
     x, y = w / 2, d / 2
@@ -299,18 +284,18 @@ def barstool(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
         parts += pieces("back", upright_pad(rng, finishes, around(0.45 * w), (y - 0.055, y), (seat + 0.05, h)), finishes.soft)
         struts = [box(around(0.012, s * 0.3 * w), (0.85 * y, 0.85 * y + 0.012), (top, seat + 0.05), 0.002) for s in (-1, 1)]
         parts += pieces("struts", struts, metal)
-    return Shape(parts)
+    return parts
 
 
-def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bed-end bench, an ottoman, a stool on legs, a round pouf, or a ceramic drum."""
     x, y = w / 2, d / 2
     if form == "drum":
         glazed = Finish("glaze", finishes.soft.color, 0.2, density=900)
-        return Shape(pieces("drum", lathe("drum_stool", x, h, 24, squash=d / w), glazed))
+        return pieces("drum", lathe("drum_stool", x, h, 24, squash=d / w), glazed)
     if form == "pouf":
         wool = Finish("knit", finishes.soft.color, 0.95, pattern="knit", density=80)
-        return Shape(pieces("pouf", lathe("pouf", x, h, 28, squash=d / w), wool))
+        return pieces("pouf", lathe("pouf", x, h, 28, squash=d / w), wool)
     cord = piping(rng, finishes)
     if form == "ottoman":
         low = 0.66 * h
@@ -321,8 +306,8 @@ def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
             pad = tufted_panel((-x, x), (-0.34 * h, 0.0), (-y, y), max(2, round(w / 0.22)), max(2, round(d / 0.22)))
             laid = stand_up(pad, (0, 0, 0))
             drop = low - min(float(s.vertices[:, 2].min()) for s in laid)
-            return Shape(parts + pieces("seat", [s.translate((0, 0, drop)) for s in laid], finishes.soft))
-        return Shape(parts + seat_cushion((-x, x), (-y, y), (low, h), 0.05, finishes.soft, cord))
+            return parts + pieces("seat", [s.translate((0, 0, drop)) for s in laid], finishes.soft)
+        return parts + seat_cushion((-x, x), (-y, y), (low, h), 0.05, finishes.soft, cord)
     kind = draw_kind(rng, finishes, "bun blade")
     half = inside(kind, (x, y), h - 0.1, 0.04)
     thick = min(0.12, 0.3 * h) if form == "bench" else 0.07
@@ -330,7 +315,7 @@ def stool(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
     parts = pieces("legs", legs(kind, half, top - 0.035, 0.04), finish)
     parts += pieces("frame", board(around(x - 0.008), around(y - 0.008), (top - 0.035, top), 0.02, 2, 0.004), finish)
     if form == "legs" and rng.random() < 0.35:
-        return Shape(parts + pieces("seat", board((-x, x), (-y, y), (top, h), 0.03, 3, finishes.style.edge), finishes.body))
+        return parts + pieces("seat", board((-x, x), (-y, y), (top, h), 0.03, 3, finishes.style.edge), finishes.body)
     for span in split((-x, x), max(1, round(w / 0.55)) if form == "bench" else 1, 0.001):
         parts += seat_cushion(span, (-y, y), (top, h), 0.04, finishes.soft, cord)
-    return Shape(parts)
+    return parts

@@ -101,18 +101,13 @@ def colliders(parts: Iterable[Piece]) -> list[Solid]:
     groups: dict[str, list[Solid]] = {}
     for piece in parts:
         (groups.setdefault(piece.group, []) if piece.group else alone).append(piece.solid)
-    hulls = [_hull_or_box(members) for members in groups.values()]
-    return alone + [_smaller(solid, *solid.bounds()) for solid in hulls]
-
-
-def _hull_or_box(members: list[Solid]) -> Solid:
-    if len(members) == 1:
-        return members[0]
-    solid = hull(np.concatenate([s.vertices for s in members]))
-    low, high = solid.bounds()
-    if solid.volume() > BOXY * float(np.prod(high - low)):
-        return box(*((float(a), float(b)) for a, b in zip(low, high, strict=True)))  # type: ignore[arg-type]
-    return solid
+    for members in groups.values():
+        solid = members[0] if len(members) == 1 else hull(np.concatenate([s.vertices for s in members]))
+        low, high = solid.bounds()
+        if len(members) > 1 and solid.volume() > BOXY * float(np.prod(high - low)):
+            solid = box(*((float(a), float(b)) for a, b in zip(low, high, strict=True)))  # type: ignore[arg-type]
+        alone.append(_smaller(solid, *solid.bounds()))
+    return alone
 
 
 def fit_to_size(shape: Shape, size: Vector) -> Shape:

@@ -8,7 +8,7 @@ from pipeline.corpus.furniture.bent import arc, curve, lathe, lean, prism, sheet
 from pipeline.corpus.furniture.finishes import Finish, Finishes, Material, cane, one_of, tint
 from pipeline.corpus.furniture.intervals import Interval, around, between, corners, edges, inset, polar, split
 from pipeline.corpus.furniture.legs import draw_kind, leg, leg_finish, legs
-from pipeline.corpus.furniture.shape import Piece, Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Piece, Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, at_height, beam, box, cushion, revolve, rod, slab, stack
 from pipeline.corpus.furniture.textiles import bolster, channels, piping, seat_cushion, throw_pillow, tufted_panel, upright_pad
 
@@ -17,13 +17,8 @@ LIFTS = {"track": 0.05, "legs": 0.15, "roll": 0.09, "chesterfield": 0.1, "camelb
 REST = (1.2, 1.45, 1.5, 1.4, 1.2)  # widths along a wooden arm, in those of its post
 
 
-def lounge_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build an easy chair in a wooden frame, an office chair, a wing chair, a recliner's shell, a tub or a cane chair."""
-    build = {"easy": _easy, "office": _office, "wing": _wing, "lounger": _lounger, "tub": _tub, "rattan": _rattan}[form]
-    return Shape(build(rng, w, d, h, finishes))
-
-
-def _easy(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def easy_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a low chair with loose cushions in an open frame of wood."""
     seat, x, y = min(0.42, 0.48 * h), w / 2, d / 2
     arm = seat + 0.18
     t = 0.032 * finishes.style.slim
@@ -48,7 +43,8 @@ def _easy(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fini
     return parts + pieces("laths", lean(laths, seat - 0.1, slope), wood)
 
 
-def _wing(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def wing_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a chair with wings beside its high back, and rolled arms."""
     seat, x, y = min(0.44, 0.46 * h), w / 2, d / 2
     kind = draw_kind(rng, finishes, "plank cross sled hairpin pipe blade horse")
     low, cloth = 0.17, finishes.soft
@@ -69,7 +65,8 @@ def _wing(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fini
     return parts
 
 
-def _office(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def office_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a chair that turns on a star of five castors."""
     seat, r = min(0.5, 0.52 * h), 0.46 * min(w, d)
     base: list[Solid] = []
     wheels: list[Solid] = []
@@ -98,7 +95,7 @@ def _office(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fi
     return parts + pieces("arms", arms, "plastic")
 
 
-def _lounger(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def lounger(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Bent plywood shells with thick leather pads on a star foot."""
     seat, x, y = min(0.4, 0.46 * h), w / 2, d / 2
     wood, rise = finishes.timber, h - seat
@@ -119,7 +116,7 @@ def _lounger(rng: np.random.Generator, w: float, d: float, h: float, finishes: F
     return parts + pieces("foot", star + column, finishes.handle)
 
 
-def _tub(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def tub_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a round seat inside a wall that wraps it, sewn in channels or plain."""
     seat, x, y = min(0.43, 0.52 * h), w / 2, d / 2
     low = 0.13
@@ -142,7 +139,8 @@ def _tub(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finis
     return parts + pieces("seat", stack(rings), finishes.soft if rng.random() < 0.7 else finishes.second)
 
 
-def _rattan(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def rattan_chair(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a chair of poles and woven cane, its back and arms one hoop."""
     """Build a round back of cane in a bent frame, a cushion on a woven seat."""
     seat, x, y = min(0.4, 0.5 * h), w / 2, d / 2
     pole = Finish("rattan_pole", tint(rng, (0.42, 0.25, 0.10)), 0.6, pattern="grain", density=450)
@@ -159,12 +157,8 @@ def _rattan(rng: np.random.Generator, w: float, d: float, h: float, finishes: Fi
     return parts + pieces("legs", feet, pole) + pieces("pad", [s.scale(np.array([0.8 * x, 0.74 * y, 1])) for s in pad], finishes.soft)
 
 
-def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a sofa: square, slim or rolled arms, a buttoned Chesterfield, a camel's back, a wooden frame, a low cloud, or curved ends."""
-    if form == "tub":
-        return lounge_chair(rng, "tub", w, d, h, finishes)
-    if form == "frame":
-        return Shape(_frame_sofa(rng, w, d, h, finishes))
+def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+    """Build a sofa: square, slim or rolled arms, a buttoned Chesterfield, a camel's back, a low cloud, or curved ends."""
     seats = max(1, round((w - 0.4) / (0.72 if form != "cloud" else 0.95)))
     seat = float(rng.uniform(0.40, 0.44)) * min(1.0, h / 0.78) * (0.92 if form == "cloud" else 1.0)
     arm, lift = ARMS[form] * min(1.0, w / 0.85), LIFTS[form]
@@ -175,8 +169,11 @@ def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
     side = arm if form == "track" else 0.012
     parts += pieces("frame", cushion(around(w / 2 - side), (front + 0.03, d / 2 - 0.008), (lift, base_top), 0.018, 2), finishes.soft)
     inner = around(w / 2 - arm)
-    if form == "u_shape":
-        parts += _returns(w, d, front, lift, base_top, seat, arm, finishes)
+    for lo, hi in edges(inner, min(0.75, 0.28 * w)) if front > -d / 2 else ():  # seats that come forward at both ends
+        end = cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, base_top), 0.018, 2)
+        parts += pieces("frame_end", end, finishes.soft)
+        span = inset((lo, hi), 0.003)
+        parts += seat_cushion(span, (-d / 2, front - 0.003), (base_top, seat + 0.022), 0.05, finishes.soft, None, 0.025)
     top = min(h - 0.04, seat + 0.2) if form != "chesterfield" else h - 0.08
     rolled = form in ("roll", "chesterfield", "camelback")
     face = d / 2 - 0.62 * deep
@@ -186,11 +183,11 @@ def sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
     if form in ("chesterfield", "camelback"):
         for x in split(inner, seats, 0.001):
             parts += seat_cushion(x, (front, face - 0.002), (base_top, seat + 0.03), 0.04, finishes.soft, piping(rng, finishes), 0.03)
-        return Shape(parts)
+        return parts
     parts += _cushions(rng, inner, (front, face), (base_top, seat), h, seats, deep, finishes)
     if w > 1.2:
         parts += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), finishes)
-    return Shape(parts)
+    return parts
 
 
 def feet(rng: np.random.Generator, finishes: Finishes, x: Interval, y: Interval, lift: float, form: str) -> Pieces:
@@ -270,19 +267,7 @@ def _pillows(rng: np.random.Generator, x: float, y: float, z: Interval, finishes
     return pieces("pillows", pillows, finishes.second)
 
 
-def _returns(w: float, d: float, front: float, lift: float, top: float, seat: float, arm: float, finishes: Finishes) -> Pieces:
-    """Return the seats that come forward at both ends of a sofa in the shape of a U."""
-    if front <= -d / 2:
-        return ()
-    parts: Pieces = ()
-    for lo, hi in edges(around(w / 2 - arm), min(0.75, 0.28 * w)):
-        frame = cushion((lo + 0.005, hi - 0.002), (-d / 2 + 0.02, front + 0.028), (lift, top), 0.018, 2)
-        parts += pieces("frame_end", frame, finishes.soft)
-        parts += seat_cushion(inset((lo, hi), 0.003), (-d / 2, front - 0.003), (top, seat + 0.022), 0.05, finishes.soft, None, 0.025)
-    return parts
-
-
-def _frame_sofa(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
+def frame_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Loose cushions in an open frame of wood with laths behind them."""
     x, y = w / 2, d / 2
     seat = 0.42 * min(1.0, h / 0.78)
@@ -314,7 +299,7 @@ def _frame_sofa(rng: np.random.Generator, w: float, d: float, h: float, finishes
     return parts + pieces("back_cushions", lean(pads, seat - 0.02, slope), finishes.soft)
 
 
-def l_shaped_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def l_shaped_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a sofa along the back and a chaise that reaches forward at one end (`form`: left or right, seen from the front)."""
     style = one_of(rng, ("track", "legs", "cloud"))
     lift, arm, deep = LIFTS[style], ARMS[style] * 1.1, 0.2
@@ -344,21 +329,21 @@ def l_shaped_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     parts += _pillows(rng, w / 2 - arm, d / 2 - 1.75 * deep, (seat + 0.022, h), finishes)
     if form == "right":
         parts = tuple(Piece(p.name, p.solid.mirror(), p.finish, p.part) for p in parts)
-    return Shape(parts)
+    return parts
 
 
-def lazy_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def lazy_sofa(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bean bag in the shape of a drop, or a soft block seat with a rolled back."""
     x, y = w / 2, d / 2
     if form == "bean":
-        return Shape(pieces("bag", lean(lathe("bean_bag", x, h, 26, squash=y / x), 0.0, 0.22), finishes.soft))
+        return pieces("bag", lean(lathe("bean_bag", x, h, 26, squash=y / x), 0.0, 0.22), finishes.soft)
     seat = min(0.38, 0.52 * h)
     parts = pieces("body", cushion((-x, x), (-y, y), (0, seat), 0.11, 4, 0.03), finishes.soft)
     parts += pieces("back", cushion((-x, x), (y - 0.3 * d, y), (seat - 0.012, h), 0.12, 4), finishes.soft)
-    return Shape(parts + pieces("bolster", bolster(around(0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), finishes.second))
+    return parts + pieces("bolster", bolster(around(0.8 * x), y - 0.3 * d - 0.075, seat + 0.05, 0.075), finishes.second)
 
 
-def chaise_longue(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def chaise_longue(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a long seat with a raised back and one arm, or a scrolled recamier."""
     x, y = w / 2, d / 2
     seat = 0.42 * min(1.0, h / 0.8)
@@ -370,10 +355,10 @@ def chaise_longue(rng: np.random.Generator, form: str, w: float, d: float, h: fl
     if form == "recamier":
         pad = tufted_panel((-x, x), (y - 0.17, y - 0.06), (seat - 0.13, h - 0.16), max(2, round(w / 0.18)), 3)
         parts += pieces("back", pad, finishes.soft) + pieces("scroll", bolster((-x, x), y - 0.085, h - 0.085, 0.085), finishes.soft)
-        return Shape(parts + pieces("bolster", bolster(around(0.75 * x), y - 0.255, seat + 0.105, 0.08), finishes.second))
+        return parts + pieces("bolster", bolster(around(0.75 * x), y - 0.255, seat + 0.105, 0.08), finishes.second)
     parts += pieces("back", cushion((-x, x), (y - 0.165, y), (seat - 0.13, h), 0.06, 3), finishes.soft)
     s = -1 if rng.random() < 0.5 else 1
     lo, hi = (x - 0.11, x) if s > 0 else (-x, -x + 0.11)
     parts += pieces("arm", cushion((lo, hi), (0.05 * y, y - 0.168), (seat + 0.024, seat + 0.24), 0.04, 3), finishes.soft)
     at = (-0.75 * x, x - 0.125) if s > 0 else (-x + 0.125, 0.75 * x)
-    return Shape(parts + pieces("bolster", bolster(at, y - 0.168 - 0.085, seat + 0.107, 0.08), finishes.second))
+    return parts + pieces("bolster", bolster(at, y - 0.168 - 0.085, seat + 0.107, 0.08), finishes.second)

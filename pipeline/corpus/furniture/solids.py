@@ -80,10 +80,6 @@ class Solid:
         pivot = np.asarray(about, float)
         return Solid((self.vertices - pivot) @ R.T + pivot, self.faces)
 
-    def transform(self, matrix: NDArray[np.float64]) -> Solid:
-        """Return the solid under a linear map (3, 3) of positive determinant: sheared, stretched or turned."""
-        return Solid(self.vertices @ matrix.T, self.faces)
-
     def mirror(self) -> Solid:
         """Return the mirror image in x, faces turned so that they still look outwards."""
         return Solid(self.vertices * np.array([-1.0, 1.0, 1.0]), tuple(f[::-1] for f in self.faces))
@@ -142,8 +138,11 @@ def box(x: Interval, y: Interval, z: Interval, bevel: float = 0.0) -> Solid:
         ring = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
         return stack([at_height(ring, z[0]), at_height(ring, z[1])])
     rings = []
-    for height, inset in ((z[0], 1), (z[0] + bevel, 0), (z[1] - bevel, 0), (z[1], 1)):
-        rings.append(at_height(_octagon(x, y, bevel, inset * bevel), height))
+    for height, inset in ((z[0], bevel), (z[0] + bevel, 0.0), (z[1] - bevel, 0.0), (z[1], bevel)):
+        x0, x1, y0, y1 = x[0] + inset, x[1] - inset, y[0] + inset, y[1] - inset
+        b = bevel * (1 - 0.5 * (inset > 0))  # so that the edges keep their directions
+        octagon = [(x0 + b, y0), (x1 - b, y0), (x1, y0 + b), (x1, y1 - b), (x1 - b, y1), (x0 + b, y1), (x0, y1 - b), (x0, y0 + b)]
+        rings.append(at_height(np.array(octagon), height))
     return stack(rings)
 
 
@@ -156,14 +155,6 @@ def strips(x: Interval, y: Interval, hole_x: Interval, hole_y: Interval, z: Inte
 def walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0.0) -> list[Solid]:
     """Return four walls of thickness `t` [m] along the inside of the rectangle `x`, `y`."""
     return strips(x, y, (x[0] + t, x[1] - t), (y[0] + t, y[1] - t), z, bevel)
-
-
-def _octagon(x: Interval, y: Interval, bevel: float, inset: float) -> NDArray[np.float64]:
-    """Return a rectangle with cut corners (8, 2), drawn in by `inset` along x and y; its edges keep their directions."""
-    x0, x1, y0, y1 = x[0] + inset, x[1] - inset, y[0] + inset, y[1] - inset
-    b = bevel * (1 - 0.5 * (inset > 0))
-    corners = [(x0 + b, y0), (x1 - b, y0), (x1, y0 + b), (x1, y1 - b), (x1 - b, y1), (x0 + b, y1), (x0, y1 - b), (x0, y0 + b)]
-    return np.array(corners)
 
 
 def cushion(x: Interval, y: Interval, z: Interval, radius: float, steps: int = 2, crown: float = 0.0) -> Solid:

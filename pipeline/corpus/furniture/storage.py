@@ -65,7 +65,12 @@ def wardrobe(rng: np.random.Generator, form: str, w: float, d: float, h: float, 
     else:
         columns = _wardrobe_columns(rng, form, w, h, how)
     shape = case((w, d, h), columns, how)
-    return Shape(shape.base + _rails(shape, finishes), shape.movers)
+    rails: Pieces = ()  # to hang clothes on, under every hat shelf
+    for name, (low, high) in ((p.name, p.solid.bounds()) for p in shape.base if p.name.endswith("_board_0")):
+        if high[0] - low[0] > 0.35 and high[2] > 1.4:
+            y, z = (low[1] + high[1]) / 2, low[2] - 0.06
+            rails += pieces(f"{name}_rail", rod((low[0] + 1e-3, y, z), (high[0] - 1e-3, y, z), 0.012), finishes.handle)
+    return Shape(shape.base + rails, shape.movers)
 
 
 def _wardrobe_columns(rng: np.random.Generator, form: str, w: float, h: float, how: Case) -> list[Column]:
@@ -87,16 +92,6 @@ def _wardrobe_columns(rng: np.random.Generator, form: str, w: float, h: float, h
     elif w / count < 0.6:
         columns = [Column(1.0, (Cell("left", 3.6, 1), *doors[1:]))]
     return columns
-
-
-def _rails(shape: Shape, finishes: Finishes) -> Pieces:
-    """Return a hanging rail under every hat shelf."""
-    rails: Pieces = ()
-    for name, (low, high) in ((p.name, p.solid.bounds()) for p in shape.base if p.name.endswith("_board_0")):
-        if high[0] - low[0] > 0.35 and high[2] > 1.4:
-            y, z = (low[1] + high[1]) / 2, low[2] - 0.06
-            rails += pieces(f"{name}_rail", rod((low[0] + 1e-3, y, z), (high[0] - 1e-3, y, z), 0.012), finishes.handle)
-    return rails
 
 
 def cabinet(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:

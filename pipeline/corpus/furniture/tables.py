@@ -10,7 +10,7 @@ from pipeline.corpus.furniture.bent import arc, lathe, prism, turns, wall
 from pipeline.corpus.furniture.casework import Case, Cell, Column, case, grid
 from pipeline.corpus.furniture.finishes import Finish, Finishes, cane
 from pipeline.corpus.furniture.fronts import Rect, frame
-from pipeline.corpus.furniture.intervals import Interval, Spot, around, polar, split
+from pipeline.corpus.furniture.intervals import Interval, around, polar, split
 from pipeline.corpus.furniture.legs import WIDE, draw_kind, inside, leg_finish, legs, pedestal
 from pipeline.corpus.furniture.shape import Pieces, Shape, join_shapes, pieces, translate
 from pipeline.corpus.furniture.solids import Solid, beam, board, box, circle, revolve, ring, rod, rounded_rectangle, slab, stand_up
@@ -59,15 +59,11 @@ def legged_table(rng: np.random.Generator, w: float, d: float, h: float, finishe
     if not framed:
         drop = (0.075 if h > 0.6 else 0.045) + 0.02 * finishes.style.ornament
         gap = 0.5 * thick + (0.004 if kind not in ("turned", "fluted") else 0.0)
-        parts += pieces("apron", rails(half, (h - t - drop, h - t), gap), finish)
+        (x, y), z = half, (h - t - drop, h - t)
+        rails = [box(around(x - gap), around(0.01, s * y), z, 0.002) for s in (-1, 1)]
+        rails += [box(around(0.01, s * x), around(y - gap), z, 0.002) for s in (-1, 1)]
+        parts += pieces("apron", rails, finish)
     return Shape(parts)
-
-
-def rails(half: Spot, z: Interval, gap: float) -> list[Solid]:
-    """Return four rails between the tops of legs at (+-half), each `gap` short of a leg's middle."""
-    x, y = half
-    along = [box(around(x - gap), around(0.01, s * y), z, 0.002) for s in (-1, 1)]
-    return along + [box(around(0.01, s * x), around(y - gap), z, 0.002) for s in (-1, 1)]
 
 
 def dining_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -79,8 +75,11 @@ def dining_table(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     under = h - t
     if form in ("tulip", "drum"):
         parts = pieces("top", top(circle(w / 2, 36), (under, h), finishes), material)
-        if form == "drum":
-            return Shape(parts + fluted_drum(0.3 * w, under, finishes))
+        if form == "drum":  # clad in upright half-round staves
+            radius, r = 0.3 * w, math.pi * (0.3 * w) / 30
+            staves = [rod(polar(radius + 0.85 * r, a, 0.0), polar(radius + 0.85 * r, a, under), 0.95 * r, n=6) for a in turns(30)]
+            parts += pieces("drum", revolve([(radius, 0.0), (radius, under)], 24), finishes.body)
+            return Shape(parts + pieces("staves", staves, finishes.body))
         return Shape(parts + pieces("pedestal", lathe("trumpet", 0.32 * w, under, 24), finishes.front))
     parts = pieces("top", top(outline(rng, finishes, w, d), (under, h), finishes), material)
     if form == "bar":
@@ -97,13 +96,6 @@ def dining_table(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     solids = [box(around(half, s * x), around(0.4 * d), (0, under), 0.006) for s in (-1, 1)]
     solids.append(box(around(x - half), (-0.016, 0.016), (0.55 * h, under), 0.003))
     return Shape(parts + pieces("slabs", solids, finishes.body))
-
-
-def fluted_drum(radius: float, height: float, finishes: Finishes) -> Pieces:
-    """Return a round base clad in upright half-round staves."""
-    r = math.pi * radius / 30
-    staves = [rod(polar(radius + 0.85 * r, a, 0.0), polar(radius + 0.85 * r, a, height), 0.95 * r, n=6) for a in turns(30)]
-    return pieces("drum", revolve([(radius, 0.0), (radius, height)], 24), finishes.body) + pieces("staves", staves, finishes.body)
 
 
 def _bar(w: float, d: float, h: float, t: float, finishes: Finishes) -> Pieces:
@@ -157,7 +149,7 @@ def corner_side_table(rng: np.random.Generator, form: str, w: float, d: float, h
     return Shape(parts + pieces("pedestal", pedestal(rng, finishes, 0.36 * w, h - 0.024), finishes.accent))
 
 
-def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Three splayed legs, a drum with an open side, a tulip foot, or a tray on a tripod."""
     material = top_finish(rng, finishes, stone=1.4)
     under = h - (0.035 if form == "tray" else 0.022)
@@ -166,14 +158,14 @@ def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: 
         parts = pieces("top", slab(circle(w / 2, 32), (under, h), 0.004), material)
         parts += pieces("wall", wall(bow, 0.014, 0.02, under), finishes.front)
         parts += pieces("boards", slab(circle(0.44 * w, 28), (0.45 * h, 0.45 * h + 0.016)), finishes.body)
-        return Shape(parts + pieces("foot", slab(circle(0.46 * w, 28), (0.0, 0.02), 0.003), finishes.body))
+        return parts + pieces("foot", slab(circle(0.46 * w, 28), (0.0, 0.02), 0.003), finishes.body)
     if form == "tray":
         parts = pieces("rim", ring((w / 2, w / 2), (w / 2 - 0.008, w / 2 - 0.008), (under, h), 32), finishes.handle)
         parts += pieces("tray", slab(circle(w / 2 - 0.0085, 32), (under, h - 0.022)), material)
     else:
         parts = pieces("top", top(circle(w / 2, 32), (under, h), finishes), material)
     if form == "tulip":
-        return Shape(parts + pieces("foot", lathe("trumpet", 0.34 * w, under, 24), finishes.front))
+        return parts + pieces("foot", lathe("trumpet", 0.34 * w, under, 24), finishes.front)
     angles = turns(3, -math.pi / 2)
     solids = [rod(polar(0.44 * w, a, 0), polar(0.2 * w, a, under - 0.012), 0.011, 0.018, 10) for a in angles]
     solids.append(slab(circle(0.27 * w, 24), (under - 0.012, under), 0.002))
@@ -181,7 +173,7 @@ def round_end_table(rng: np.random.Generator, form: str, w: float, d: float, h: 
     if rng.random() < 0.4 and form == "tripod":
         shelf = prism(np.array([polar(0.26 * w, a) for a in angles]), "z", (0.38 * h, 0.38 * h + 0.014))
         parts += pieces("shelf", shelf, "glass" if rng.random() < 0.4 else finishes.body)
-    return Shape(parts)
+    return parts
 
 
 def desk(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
@@ -195,24 +187,18 @@ def desk(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
         table = legged_table(rng, w, d, work, finishes, without="block bun horse")
         panel = box(around(0.44 * w), (0.3 * d, 0.3 * d + 0.015), (0.4 * work, work - 0.05))
         shape = Shape(table.base + pieces("modesty", panel, finishes.body))
-    if h - work > 0.1:
-        shape = join_shapes(shape, Shape(_hutch(w, d, (work, h), finishes)))
-    return shape
-
-
-def _hutch(w: float, d: float, z: Interval, finishes: Finishes) -> Pieces:
-    """Return a shelf that stands at the back of a desk, over heights `z`."""
-    depth, t = min(0.24, 0.4 * d), 0.018
-    y, top, height = (d / 2 - depth, d / 2), z[1] - t, z[1] - z[0]
+    if h - work <= 0.1:
+        return shape
+    y, t = (d / 2 - min(0.24, 0.4 * d), d / 2), 0.018
     spans = split((-w / 2 + 0.01, w / 2 - 0.01 - t), max(1, round(w / 0.7)))
-    sides = [box((x, x + t), y, (z[0], top)) for x in (*(a for a, _ in spans), spans[-1][1])]
-    parts = pieces("hutch_sides", sides, finishes.body)
-    parts += pieces("hutch_top", box(around(w / 2 - 0.01), y, (top, z[1]), 0.002), finishes.body)
-    middle = z[0] + 0.55 * height
-    if height > 0.3:
-        boards = [box((a + t, b), (y[0] + 0.01, y[1]), (middle, middle + 0.016)) for a, b in spans]
-        parts += pieces("hutch_boards", boards, finishes.body)
-    return parts
+    sides = [box((x, x + t), y, (work, h - t)) for x in (*(a for a, _ in spans), spans[-1][1])]
+    hutch = pieces("hutch_sides", sides, finishes.body)
+    hutch += pieces("hutch_top", box(around(w / 2 - 0.01), y, (h - t, h), 0.002), finishes.body)
+    if h - work > 0.3:
+        z = work + 0.55 * (h - work)
+        boards = [box((a + t, b), (y[0] + 0.01, y[1]), (z, z + 0.016)) for a, b in spans]
+        hutch += pieces("hutch_boards", boards, finishes.body)
+    return join_shapes(shape, Shape(hutch))
 
 
 def _pedestal_desk(rng: np.random.Generator, w: float, d: float, h: float, finishes: Finishes) -> Shape:

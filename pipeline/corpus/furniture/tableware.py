@@ -31,11 +31,11 @@ def vessel(profile: list[Spot], wall: float, floor: float, n: int) -> list[Solid
     return solids
 
 
-def cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a mug with a handle, a tumbler of glass, or a bowl-shaped tea cup."""
     finish = glaze(rng)
     if form == "tumbler":
-        return Shape(pieces("cup", vessel([(0.40 * w, 0.0), (0.5 * w, h)], 0.003, 0.006, 24), "clear_glass"))
+        return pieces("cup", vessel([(0.40 * w, 0.0), (0.5 * w, h)], 0.003, 0.006, 24), "clear_glass")
     r = 0.5 * d
     x = r - w / 2  # the body stands left of the middle, the handle is right of it
     mug, bowl_shaped = [(0.92, 0.0), (1.0, 0.12), (1.0, 1.0)], [(0.5, 0.0), (0.74, 0.14), (0.92, 0.45), (1.0, 1.0)]
@@ -44,27 +44,27 @@ def cup(rng: np.random.Generator, form: str, w: float, d: float, h: float, finis
     edge = x + r - 0.004
     bow = ((edge - 0.1 * r, 0.82), (w / 2 - 0.004, 0.72), (w / 2 - 0.006, 0.4), (edge - 0.1 * r * (form != "mug"), 0.24))
     grip = tube(curve([(px, 0, z * h) for px, z in bow], 2), 0.0045, 6)
-    return Shape(pieces("cup", body, finish) + pieces("handle", grip, finish))
+    return pieces("cup", body, finish) + pieces("handle", grip, finish)
 
 
-def plate(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def plate(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a flat plate, or a deep one, with a rim."""
     r = w / 2
     finish = glaze(rng) if rng.random() < 0.6 else "ceramic"
     well = 0.64 if form == "flat" else 0.52
     low = pieces("well", slab(circle(well * r, 24), (0.0, 0.3 * h)), finish)
-    return Shape(low + pieces("rim", ring((well * r, r), (well * r - 0.003, r - 0.01), (0.3 * h, h), 24), finish))
+    return low + pieces("rim", ring((well * r, r), (well * r - 0.003, r - 0.01), (0.3 * h, h), 24), finish)
 
 
-def bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def bowl(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bowl of pottery or wood."""
     r = w / 2
     finish = Finish("turned_wood", tint(rng, COLORS["beech"]), 0.5, pattern="grain", density=650) if form == "wood" else glaze(rng)
     profile = [(0.42 * r, 0.0), (0.78 * r, 0.32 * h), (0.95 * r, 0.7 * h), (r, h)]
-    return Shape(pieces("bowl", vessel(profile, 0.006, 0.08 * h, 24), finish))
+    return pieces("bowl", vessel(profile, 0.006, 0.08 * h, 24), finish)
 
 
-def vase(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def vase(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bottle, a bellied or an upright vase, some with twigs in it."""
     finish = glaze(rng)
     tall, share, n = (0.55 * h, 0.42, 16) if form == "twigs" else (h, 1.0, 24)
@@ -74,11 +74,8 @@ def vase(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
     base = pieces("vase", revolve(curve(lower, 3).tolist(), n), finish)
     for (r0, z0), (r1, z1) in itertools.pairwise(upper):
         base += pieces("neck", ring((r0, r1), (0.78 * r0, 0.78 * r1), (z0, z1), n), finish)
-    return Shape(base + _twigs(rng, w, d, h, tall) if form == "twigs" else base)
-
-
-def _twigs(rng: np.random.Generator, w: float, d: float, h: float, tall: float) -> Pieces:
-    """Return twigs with leaves that stand in a vase, `tall` [m]."""
+    if form != "twigs":
+        return base
     stems: list[Solid] = []
     roots, tips = [], []
     count = int(rng.integers(4, 7))
@@ -93,7 +90,7 @@ def _twigs(rng: np.random.Generator, w: float, d: float, h: float, tall: float) 
             tips += [p + polar(0.05, a + side * 0.9, 0.02) for side in (-1, 1)]
     color = FINISHES["leaf"].color if rng.random() < 0.6 else (0.40, 0.26, 0.10)
     green = Finish("dry_leaf", tint(rng, color, 0.25), 0.7, pattern="leaf", density=300)
-    return pieces("stems", stems, "twig") + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green)
+    return base + pieces("stems", stems, "twig") + pieces("leaves", blades(np.array(roots), np.array(tips), 0.022), green)
 
 
 def binding(rng: np.random.Generator) -> Finish:
@@ -110,10 +107,10 @@ def flat_book(rng: np.random.Generator, x: Interval, y: Interval, z: Interval) -
     return parts + pieces("pages", box((x[0] + t, x[1] - 0.004), inset(y, 0.004), inset(z, t)), "paper")
 
 
-def book(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def book(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a book that lies, stands upright, or lies open."""
     if form != "open":
-        return Shape(flat_book(rng, around(w / 2), around(d / 2), (0.0, h)))
+        return flat_book(rng, around(w / 2), around(d / 2), (0.0, h))
     t = min(0.0035, 0.2 * h)
     parts = pieces("cover", box(around(w / 2), around(d / 2), (0.0, t)), binding(rng))
     for s in (-1, 1):
@@ -121,10 +118,10 @@ def book(rng: np.random.Generator, form: str, w: float, d: float, h: float, fini
         low, high = (h, 0.6 * h)[::s]  # the pages rise towards the fold
         block = np.array([(x0, t), (x1, t), (x1, high), (x0, low)])
         parts += pieces("pages", prism(block, "y", around(d / 2 - 0.005)), "paper")
-    return Shape(parts)
+    return parts
 
 
-def book_stack(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def book_stack(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a pile of books, or a row of upright ones."""
     parts: Pieces = ()
     if form == "row":
@@ -138,7 +135,7 @@ def book_stack(rng: np.random.Generator, form: str, w: float, d: float, h: float
             parts += pieces("cover", [*boards, box(inner, (y, y + skin), (0, tall))], cover)
             parts += pieces("pages", box(inner, (y + skin, y + deep - 0.004), (0.003, tall - 0.004)), "paper")
             x += t + 0.0008
-        return Shape(parts)
+        return parts
     count = max(2, round(h / 0.035))
     levels = np.cumsum(rng.uniform(0.6, 1.4, count))
     levels = np.concatenate([[0.0], levels / levels[-1] * h])
@@ -146,10 +143,10 @@ def book_stack(rng: np.random.Generator, form: str, w: float, d: float, h: float
         share = 1.0 if k == 0 else float(rng.uniform(0.75, 0.98))
         dx, dy = (float(v) for v in rng.uniform(-0.5, 0.5, 2) * (1 - share))
         parts += flat_book(rng, (w * (dx - share / 2), w * (dx + share / 2)), (d * (dy - share / 2), d * (dy + share / 2)), z)
-    return Shape(parts)
+    return parts
 
 
-def basket(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def basket(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a woven basket, round or square, with two handles."""
     straw = Finish("straw", tint(rng, (0.52, 0.36, 0.18)), 0.9, pattern="cane", density=300, second=(0.22, 0.14, 0.07))
     body = h - 0.03
@@ -169,7 +166,7 @@ def basket(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
         x0 = s * (0.478 * w if form == "round" else w / 2 - 0.012)
         bow = ((-0.05, top - 0.002), (-0.03, h - 0.006), (0.03, h - 0.006), (0.05, top - 0.002))
         grips += tube(curve([(x0, py, z) for py, z in bow], 2), 0.005, 6)
-    return Shape(pieces("basket", solids, straw) + pieces("rim", rim, straw) + pieces("grips", grips, rope))
+    return pieces("basket", solids, straw) + pieces("rim", rim, straw) + pieces("grips", grips, rope)
 
 
 def tray_walls(x: Interval, y: Interval, z: Interval, t: float, bevel: float = 0.0) -> list[Solid]:
@@ -228,10 +225,8 @@ def _swing_bin(x: Interval, y: Interval, h: float, finish: Material, hood: Mater
 
 
 def storage_box(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
-    """Build a box: a hinged lid with a latch strip, four flaps of cardboard, or a lid that slides off."""
+    """Build a box: a hinged lid with a latch strip, or a lid that slides off."""
     x, y = (-w / 2, w / 2), (-d / 2, d / 2)
-    if form == "flaps":
-        return _carton(w, d, h)
     finish = finishes.body if form == "slide" or rng.random() < 0.5 else Finish("box_lacquer", finishes.front.color, 0.5, density=600)
     t = 0.009
     if form == "slide":
@@ -255,8 +250,8 @@ def storage_box(rng: np.random.Generator, form: str, w: float, d: float, h: floa
     return Shape(base, (lid("lid", lid_parts, (0.0, y[1], low + 0.002), math.radians(100)),))
 
 
-def _carton(w: float, d: float, h: float) -> Shape:
-    """Return a carton: two long flaps meet over two short ones, which wait for them."""
+def carton(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+    """Build a carton: two long flaps meet over two short ones, which wait for them."""
     x, y, t = (-w / 2, w / 2), (-d / 2, d / 2), 0.008
     low = h - 2 * t - 0.003
     base = pieces("walls", tray_walls(x, y, (0.0, low), t), "cardboard")

@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.corpus.furniture.bent import wall
 from pipeline.corpus.furniture.finishes import CLOTH_GROUNDS, COLORS, Finish, Finishes, Material, Pattern, cover, one_of, pick, tint
 from pipeline.corpus.furniture.intervals import Interval, around, inset, split
-from pipeline.corpus.furniture.shape import Pieces, Shape, pieces
+from pipeline.corpus.furniture.shape import Pieces, pieces
 from pipeline.corpus.furniture.solids import Solid, board, box, circle, cushion, pillow, ring, rod, rounded_rectangle, slab, stand_up
 
 SEAM = 0.007  # height of a piping
@@ -88,7 +88,7 @@ def duvet(x: Interval, y: Interval, z: float, thick: float, drop: float, cloth: 
     return pieces("duvet", solids, cloth)
 
 
-def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a woven rug: bordered, with diamonds, striped, plain with a deep pile, or round; some with fringes."""
     classic = finishes.tradition != ""
     pattern: Pattern = pick(rng, "rug_border" if classic else "rug_diamonds rug_stripes rug_border boucle")  # type: ignore[assignment]
@@ -100,7 +100,7 @@ def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, finis
     light = CLOTH_GROUNDS if max(ground.color) < 0.45 else tint(rng, COLORS["taupe_cloth"], 0.3)
     weave = Finish("rug", tint(rng, ground.color, 0.08), 0.95, pattern=pattern, density=250, second=None if pattern == "boucle" else light)
     if form == "round":
-        return Shape(pieces("rug", slab(circle(w / 2, 40), (0.0, h), min(0.004, 0.3 * h)), weave))
+        return pieces("rug", slab(circle(w / 2, 40), (0.0, h), min(0.004, 0.3 * h)), weave)
     fringe = 0.06 if form == "fringed" else 0.0
     edge = rounded_rectangle(around(w / 2), around(d / 2 - fringe), 0.012 if form != "shaggy" else 0.05, 2)
     parts = pieces("rug", slab(edge, (0.0, h), min(0.004, 0.3 * h)), weave)
@@ -110,10 +110,10 @@ def rug(rng: np.random.Generator, form: str, w: float, d: float, h: float, finis
         yarn = replace(weave, name="yarn", color=CLOTH_GROUNDS, pattern="plain", second=None)
         ends = [(-d / 2, -d / 2 + fringe), (d / 2 - fringe, d / 2)]
         parts += pieces("fringe", [box((float(x), float(x) + 0.018), end, (0.0, 0.5 * h)) for x in xs for end in ends], yarn)
-    return Shape(parts)
+    return parts
 
 
-def curtain(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def curtain(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build curtains on a rod with knobs and rings: two panels drawn aside, or one sheet over the whole width."""
     cloth = finishes.soft if "leather" not in finishes.soft.pattern else cover(rng, "linen")
     rod_z = h - 0.03
@@ -125,31 +125,25 @@ def curtain(rng: np.random.Generator, form: str, w: float, d: float, h: float, f
     share = float(rng.uniform(0.16, 0.24)) if form == "drawn" else 0.5
     for s in (-1, 1):
         outer, inner = s * (w / 2 - 0.07), s * (w / 2 - 0.07 - share * (w - 0.14) + (0.002 if form != "drawn" else 0.0))
-        parts += _panel(outer, inner, d, rod_z - 0.03, cloth)
+        folds = max(3, round(abs(inner - outer) / 0.11))  # the deeper, the more the panel is drawn aside
+        t = np.linspace(0, 1, 4 * folds + 1)
+        path = np.column_stack([outer + (inner - outer) * t, (0.5 * d - 0.004) * np.sin(2 * math.pi * folds * t)])
+        parts += pieces("cloth", wall(path, 0.006, 0.0, rod_z - 0.03), cloth)
     if form == "drawn":
-        return Shape(parts)
+        return parts
     sheer = replace(cloth, name="sheer", color=(0.80, 0.79, 0.76), pattern="weave", second=None)
-    return Shape(tuple(replace(p, finish=sheer) if p.finish is cloth else p for p in parts))
+    return tuple(replace(p, finish=sheer) if p.finish is cloth else p for p in parts)
 
 
-def _panel(start: float, end: float, d: float, h: float, cloth: Material) -> Pieces:
-    """Return one pleated panel between two x [m], deeper folds the more it is drawn aside."""
-    wide = abs(end - start)
-    folds = max(3, round(wide / 0.11))
-    t = np.linspace(0, 1, 4 * folds + 1)
-    path = np.column_stack([start + (end - start) * t, (0.5 * d - 0.004) * np.sin(2 * math.pi * folds * t)])
-    return pieces("cloth", wall(path, 0.006, 0.0, h), cloth)
-
-
-def cushion_pillow(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def cushion_pillow(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a throw pillow: square or oblong, or a round one."""
     cloth = finishes.second if rng.random() < 0.5 else finishes.soft
     if form == "round":
         rims: list[Solid] = ring((0.44 * w, 0.5 * w), (0.2 * w, 0.2 * w), (0.0, 0.5 * h), 20)
         rims += ring((0.5 * w, 0.44 * w), (0.2 * w, 0.2 * w), (0.5 * h, h), 20)
         middle = slab(circle(0.2 * w, 20), (0.06 * h, 0.94 * h), 0.01)
-        return Shape(pieces("pillow", rims, cloth) + pieces("button", middle, cloth))
-    return Shape(pieces("pillow", pillow(around(w / 2), around(d / 2), (0.0, h), 3), cloth))
+        return pieces("pillow", rims, cloth) + pieces("button", middle, cloth)
+    return pieces("pillow", pillow(around(w / 2), around(d / 2), (0.0, h), 3), cloth)
 
 
 def terry(rng: np.random.Generator, finishes: Finishes) -> Finish:
@@ -159,7 +153,7 @@ def terry(rng: np.random.Generator, finishes: Finishes) -> Finish:
     return Finish("terry", tint(rng, color, 0.08), 0.95, pattern="boucle", density=150)
 
 
-def towel(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def towel(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a towel over a rail, two of them side by side, or one through a ring; the back is at the wall (+y)."""
     cloth, metal = terry(rng, finishes), finishes.handle
     if form == "ring":
@@ -168,7 +162,7 @@ def towel(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
         hoop = [box(around(0.24 * w), (-0.006, 0.006), (z, z + 0.012), 0.003) for z in (h - 0.16, h - 0.042)]
         sides = [box(around(0.005, s * 0.24 * w), (-0.006, 0.006), (h - 0.148, h - 0.042), 0.002) for s in (-1, 1)]
         parts = pieces("ring", [plate, arm, *hoop, *sides], metal)
-        return Shape(parts + _towel_over_bar(around(0.22 * w), d, h - 0.152, h - 0.16, cloth, rng))
+        return parts + _towel_over_bar(around(0.22 * w), d, h - 0.152, h - 0.16, cloth, rng)
     z = h - 0.03
     bar = [rod((-w / 2, 0, z), (w / 2, 0, z), 0.009, n=8)]
     for s in (-1, 1):
@@ -176,10 +170,10 @@ def towel(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
         bar += [rod((x, d / 2, z), (x, 0.0, z), 0.009, n=8), rod((x, d / 2, z), (x, d / 2 - 0.01, z), 0.024, n=12)]
     parts = pieces("rail", bar, metal)
     if form == "single":
-        return Shape(parts + _towel_over_bar(around(0.4 * w), d, z, z, cloth, rng))
+        return parts + _towel_over_bar(around(0.4 * w), d, z, z, cloth, rng)
     other = terry(rng, finishes)
     left = _towel_over_bar((-0.46 * w, -0.02 * w), d, z, z, cloth, rng)
-    return Shape(parts + left + _towel_over_bar((0.02 * w, 0.46 * w), d, z, 0.8 * z, other, rng))
+    return parts + left + _towel_over_bar((0.02 * w, 0.46 * w), d, z, 0.8 * z, other, rng)
 
 
 def _towel_over_bar(x: Interval, d: float, top: float, drop: float, cloth: Finish, rng: np.random.Generator) -> Pieces:
@@ -193,7 +187,7 @@ def _towel_over_bar(x: Interval, d: float, top: float, drop: float, cloth: Finis
     return pieces("towel", falls, cloth) + pieces("hem", band, hem)
 
 
-def folded_towels(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def folded_towels(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a pile of folded towels, or three rolled ones."""
     parts: Pieces = ()
     if form == "rolled":
@@ -202,17 +196,17 @@ def folded_towels(rng: np.random.Generator, form: str, w: float, d: float, h: fl
         for x, z in spots:
             roll = slab(circle(r, 16), around(d / 2), 0.25 * r).rotate("x", math.pi / 2).translate((x, 0, z))
             parts += pieces("towel", roll, terry(rng, finishes))
-        return Shape(parts)
+        return parts
     count = max(2, round(h / 0.05))
     for k in range(count):
         cloth = terry(rng, finishes)
         dx, dy = (float(v) for v in rng.uniform(-0.012, 0.012, 2))
         across, along = (-w / 2 + 0.012 + dx, w / 2 - 0.012 + dx), (-d / 2 + 0.012 + dy, d / 2 - 0.012 + dy)
         parts += pieces("towel", cushion(across, along, (k * h / count, (k + 1) * h / count - 0.001), 0.02, 3), cloth)
-    return Shape(parts)
+    return parts
 
 
-def throw(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def throw(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a folded blanket with fringes at one side."""
     pattern = pick(rng, "knit check stripe boucle")
     cloth = Finish("throw", tint(rng, finishes.second.color, 0.1), 0.95, pattern=pattern, density=120)  # type: ignore[arg-type]
@@ -220,25 +214,25 @@ def throw(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
     yarn = replace(cloth, name="yarn", pattern="plain")
     xs = np.linspace(-w / 2 + 0.02, w / 2 - 0.032, 12).tolist()
     ends = [box((x, x + 0.012), (-d / 2, -d / 2 + 0.045), (0.35 * h, 0.42 * h)) for x in xs]
-    return Shape(pieces("throw", layers, cloth) + pieces("yarn", ends, yarn))
+    return pieces("throw", layers, cloth) + pieces("yarn", ends, yarn)
 
 
-def bath_mat(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def bath_mat(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a bath mat: of terry with a border, or of wooden slats."""
     if form == "slats":
         count = max(5, round(w / 0.09))
         step = w / count
         slats = [box((-w / 2 + k * step, -w / 2 + (k + 0.8) * step), around(d / 2), (0.3 * h, h), 0.002) for k in range(count)]
         slats += [box(around(w / 2), around(0.015, s * 0.35 * d), (0.0, 0.3 * h)) for s in (-1, 1)]
-        return Shape(pieces("mat", slats, finishes.timber))
+        return pieces("mat", slats, finishes.timber)
     cloth = terry(rng, finishes)
     pile = replace(cloth, name="pile", color=tuple(0.85 * c for c in cloth.color))  # type: ignore[arg-type]
     mat = board(around(w / 2), around(d / 2), (0.0, 0.75 * h), 0.03, 2)
     field = board(around(w / 2 - 0.05), around(d / 2 - 0.05), (0.75 * h, h), 0.02, 2)
-    return Shape(pieces("mat", mat, cloth) + pieces("pile", field, pile))
+    return pieces("mat", mat, cloth) + pieces("pile", field, pile)
 
 
-def blind(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def blind(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a blind: a roller with its cloth, a pleated Roman one, or slats; the back is at the wall (+y)."""
     color = COLORS[pick(rng, "cream_cloth linen grey_cloth snow_cloth taupe_cloth")]
     cloth = Finish("blind", tint(rng, color, 0.06), 0.9, pattern="weave", density=300)
@@ -247,21 +241,21 @@ def blind(rng: np.random.Generator, form: str, w: float, d: float, h: float, fin
     if form == "roller":
         sheet = box(around(w / 2 - 0.01), (-0.0015, 0.0015), (0.02, top))
         hem = rod((-w / 2 + 0.01, 0, 0.012), (w / 2 - 0.01, 0, 0.012), 0.012, n=8)
-        return Shape(pieces("rail", rail, finishes.handle) + pieces("cloth", [sheet, hem], cloth))
+        return pieces("rail", rail, finishes.handle) + pieces("cloth", [sheet, hem], cloth)
     x = around(w / 2 - 0.005)
     if form == "roman":
         folds = max(3, round(h / 0.22))
         laps = [cushion(x, around(0.42 * d), (low, high - 0.004), 0.3 * d, 2) for low, high in split((0.0, top), folds)]
-        return Shape(pieces("rail", rail, cloth) + pieces("cloth", laps, cloth))
+        return pieces("rail", rail, cloth) + pieces("cloth", laps, cloth)
     timber = finishes.timber if rng.random() < 0.6 else "slat"
     slat = box(x, around(0.4 * d), (-0.0015, 0.0015)).rotate("x", 0.6)
     levels = split((0.0, top), max(8, round(top / 0.05)))
     slats = [slat.translate((0, 0, (low + high) / 2)) for low, high in levels]
     cords = [box(around(0.003, s * 0.35 * w), (-0.003, 0.003), (0.0, top)) for s in (-1, 1)]
-    return Shape(pieces("rail", rail, timber) + pieces("slats", slats, timber) + pieces("cords", cords, cloth))
+    return pieces("rail", rail, timber) + pieces("slats", slats, timber) + pieces("cords", cords, cloth)
 
 
-def paper_holder(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Shape:
+def paper_holder(rng: np.random.Generator, form: str, w: float, d: float, h: float, finishes: Finishes) -> Pieces:
     """Build a roll of paper on an arm, or on one under a lid; the back is at the wall (+y)."""
     r = 0.42 * h
     side, z, front = (-w / 2, -w / 2 + 0.014), (0.54 * h, 0.62 * h), d / 2 - r - 0.03
@@ -272,4 +266,4 @@ def paper_holder(rng: np.random.Generator, form: str, w: float, d: float, h: flo
     roll = stand_up([slab(circle(r, 20), around(0.38 * w), 0.002)], (0, 0, 0))[0].rotate("z", math.pi / 2)
     sheet = box(around(0.36 * w), (d / 2 - 2 * r - 0.024, d / 2 - 2 * r - 0.022), (0.0, 0.45 * h))
     placed = roll.translate((0.005, d / 2 - r - 0.024, 0.5 * h))
-    return Shape(pieces("arm", arm, finishes.handle) + pieces("roll", [placed, sheet], "paper"))
+    return pieces("arm", arm, finishes.handle) + pieces("roll", [placed, sheet], "paper")

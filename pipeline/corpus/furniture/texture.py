@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import functools
 import math
-import struct
-import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -16,6 +14,7 @@ from pipeline import seeds
 from pipeline.corpus.furniture.finishes import Finish, Pattern
 from pipeline.corpus.furniture.shape import Piece
 from pipeline.corpus.furniture.solids import Topology
+from pipeline.rendering import png
 from pipeline.rendering.palette import display
 
 Tones = NDArray[np.float64]
@@ -36,6 +35,7 @@ LARGEST = 320  # pixels a side; a model too large for that at FINEST gets fewer 
 MARGIN = 2  # pixels around each field, so that filtering does not mix neighbours
 PLAIN = 6  # pixels a side of the field of a finish without a pattern
 SHADES = 8  # of one finish
+LEVEL = 4  # of zlib
 GOLDEN = 0.6180339887498949
 
 
@@ -265,35 +265,17 @@ def paint(rng: np.random.Generator, sheet: Atlas) -> bytes:
     image = np.zeros((sheet.height, sheet.width), np.uint8)
     shades = min(SHADES, 256 // len(sheet.fields))
     palette = np.zeros((shades * len(sheet.fields), 3))
-    levels = np.linspace(0, 1, shades)
+    levels = np.linspace(0, 1, shades)[:, None]
     for k, (finish, (x, width, height)) in enumerate(sheet.fields.items()):
-        palette[k * shades : (k + 1) * shades] = _colors(finish, levels)
+        color, contrast = np.array(finish.color), CONTRAST.get(finish.pattern, 0.0)
+        second = None if finish.second is None else np.array(finish.second)
+        colors = color * (1 + contrast * (2 * levels - 1)) if second is None else color + levels * (second - color)
+        palette[k * shades : (k + 1) * shades] = colors
         spot = image[sheet.height - height :, x : x + width]
         if finish.pattern == "plain":
             spot[:] = k * shades + shades // 2
         else:
             tone = tones(rng, finish.pattern, spot.shape, sheet.scale)
             spot[:] = k * shades + np.minimum(tone * shades, shades - 1).astype(np.uint8)
-    return png(image, np.round(255 * display(np.clip(palette, 0, 1))).astype(np.uint8))
-
-
-def _colors(finish: Finish, tones: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return linear colours (n, 3) of tones from 0 to 1: from the finish's colour to its second, or about its colour."""
-    color = np.array(finish.color)
-    if finish.second is not None:
-        return np.asarray(color + tones[:, None] * (np.array(finish.second) - color))
-    return np.asarray(color * (1 + CONTRAST[finish.pattern] * (2 * tones[:, None] - 1)))
-
-
-def png(image: NDArray[np.uint8], palette: NDArray[np.uint8]) -> bytes:
-    """Encode an image of palette numbers (H, W) as PNG; the bytes depend on nothing but the image and zlib."""
-    height, width = image.shape
-    rows = np.zeros((height, width + 1), np.uint8)
-    rows[:, 1:] = image
-
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
-    parts = chunk(b"IHDR", header) + chunk(b"PLTE", palette.tobytes()) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 4))
-    return b"\x89PNG\r\n\x1a\n" + parts + chunk(b"IEND", b"")
+    colors = np.round(255 * display(np.clip(palette, 0, 1))).astype(np.uint8)
+    return png.encode(np.pad(image, ((0, 0), (1, 0))), sheet.width, LEVEL, colors.tobytes())

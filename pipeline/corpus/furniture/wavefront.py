@@ -57,7 +57,10 @@ def text(groups: Sequence[Group], library: str, sheet: Atlas) -> Text:
     pieces = [piece for group in groups for piece in group.pieces]
     vertices, shared = merge_solids([piece.solid for piece in pieces])
     normal = normals(vertices, shared)
-    known, index = _distinct(np.round(mesh_frame(normal), 3) + 0.0)
+    directions = np.round(mesh_frame(normal), 3) + 0.0
+    code = np.round((directions + 1) * 1000).astype(np.int64) @ np.array([4_000_000, 2001, 1])
+    _, distinct, index = np.unique(code, return_index=True, return_inverse=True)
+    known = directions[distinct]
     side = sides_of(normal, shared)
     _, first, place = np.unique(3 * shared.corners + side, return_index=True, return_inverse=True)
     uv = sheet.uv(pieces, vertices, shared, side)[first]
@@ -93,13 +96,6 @@ def faces_of(faces: tuple[Face, ...]) -> tuple[NDArray[np.int64], NDArray[np.int
             tris += [(start, start + i, start + i + 1) for i in range(1, len(face) - 1)]
         start += len(face)
     return np.array(tris, np.int64).reshape(-1, 3), np.array(quads, np.int64).reshape(-1, 4)
-
-
-def _distinct(directions: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the distinct directions (N, 3), of three decimals each, and which of them each is."""
-    code = np.round((directions + 1) * 1000).astype(np.int64) @ np.array([4_000_000, 2001, 1])
-    _, first, inverse = np.unique(code, return_index=True, return_inverse=True)
-    return directions[first], np.asarray(inverse, np.int64)
 
 
 def bare(name: str, solids: Sequence[Solid]) -> Text:

@@ -10,7 +10,6 @@ from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load
 from pipeline.corpus.houses.room_occupancy import Side, Space, Spot, ahead, back_gap, meets, on_side, shift_spot
 
-CHAIRS = {"two": 2, "four": 4, "six": 6, "eight": 8}
 ACROSS = 0.6  # usual distance of a chair's middle from the table's long axis [m]: it reaches under a deep table
 UNDER = 0.35  # most of a chair's depth that is under the table
 OFF_LAMP = 0.1  # deviation of the lamp from the table's middle [m]
@@ -18,13 +17,12 @@ DEEPEST = {2: 0.95, 4: 1.0, 6: 1.15, 8: 1.5}  # depth of a table for so many, wh
 BEHIND = 0.3  # free floor behind a chair [m]
 SQUARE = 1.25  # four sit around a table whose length is at most so many times its depth, one on each side
 SQUARE_SHARE = 0.35  # share of the tables for four that are square, where there is one
-SIDE_TABLES = {"none": 0, "one": 1, "two": 2}
 
 
 def furnish_dining_corner(arranger: Arranger) -> None:
     """Put a table with chairs where there is room for them; fewer chairs and a smaller table if there is not."""
     rates = load()["dining"]
-    count = CHAIRS[arranger.deal.choose("chairs", rates["chairs"])]
+    count = int(arranger.deal.choose("chairs", rates["chairs"]))
     category = "chinese_chair" if arranger.deal.mark("chinese") < rates["chinese"] else "dining_chair"
     while count >= 2:
         for _ in range(2):
@@ -260,7 +258,7 @@ def _set_lounge(arranger: Arranger, sofa: Model, spot: Spot, stand: Model | None
 def seats(arranger: Arranger, lounge: Lounge) -> None:
     """Put side tables beside the sofa; armchairs, lounge chairs and stools around the coffee table, facing it."""
     rng, space = arranger.rng, arranger.space
-    count = SIDE_TABLES[arranger.choose("side_tables")]
+    count = int(arranger.choose("side_tables"))
     signs = [-1, 1] if count == 2 else [int(rng.choice([-1, 1]))] * count
     side_table = arranger.pick("corner_side_table")
     for sign in signs:

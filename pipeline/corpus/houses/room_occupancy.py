@@ -27,6 +27,8 @@ CELL = 0.1
 WAY = 0.3  # half the width that people leave for the ways through their rooms [m]
 FILLER = 0.035  # beside what opens, and behind a lid that falls back: a door that stands open needs it for its handle [m]
 LIDS = frozenset({"trash_can"})
+Solid = tuple[Rect, float, float]
+"""What stands or hangs: its rectangle, from one height to another [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +48,7 @@ class Side:
 
     def strip(self, low: float, high: float, near: float, far: float) -> Rect:
         """Return the rectangle from `low` to `high` along the wall and from `near` to `far` in front of it [m]."""
-        xs = [self.x + s * self.tx - v * self.ty for s in (low, high) for v in (near, far)]
-        ys = [self.y + s * self.ty + v * self.tx for s in (low, high) for v in (near, far)]
+        xs, ys = zip(*(self.point(s, v) for s in (low, high) for v in (near, far)), strict=True)
         return (min(xs), min(ys), max(xs), max(ys))
 
     def along(self, box: Rect) -> tuple[float, float]:
@@ -118,9 +119,9 @@ class Space:
         self.area = room.area
         self.bounds: Rect = (*(float(v) for v in room.polygon.min(axis=0)), *(float(v) for v in room.polygon.max(axis=0)))  # type: ignore[assignment]
         self.sides = sides_of(room)
-        self.solids: list[tuple[Rect, float, float]] = [(r, -FAR, FAR) for r in outside_rects([(side.x, side.y) for side in self.sides])]
+        self.solids: list[Solid] = [(r, -FAR, FAR) for r in outside_rects([(side.x, side.y) for side in self.sides])]
         self.clearances: list[Rect] = []
-        self.swept: list[tuple[Rect, float, float]] = []
+        self.swept: list[Solid] = []
         self.gaps: list[tuple[Rect, float]] = []
         self.panes: list[tuple[Rect, float]] = []
         self.doors: list[tuple[float, float]] = []
@@ -323,12 +324,13 @@ def problems(space: Space) -> tuple[int, list[int]]:
     reach = ndimage.distance_transform_edt(labels != main, sampling=CELL)
     x0, y0 = space.bounds[:2]
 
-    def away(x: float, y: float) -> float:
-        i, j = int((x - x0) / CELL), int((y - y0) / CELL)
-        return float(reach[min(max(i, 0), reach.shape[0] - 1), min(max(j, 0), reach.shape[1] - 1)])
+    def away(a: float, b: float, c: float, d: float) -> float:
+        """Return how far the nearest cell of a rectangle is [m]."""
+        part = reach[max(int((a - x0) / CELL), 0) : int((c - x0) / CELL) + 1, max(int((b - y0) / CELL), 0) : int((d - y0) / CELL) + 1]
+        return float(part.min()) if part.size else 0.0
 
-    cut_off = sum(away(x, y) > 0.25 for x, y in space.doors)
-    far = [k for k, i in enumerate(space.items) if i.position[2] < LOW and _nearest(reach, i.rect(), (x0, y0)) > _arm(i)]
+    cut_off = sum(away(*door, *door) > 0.25 for door in space.doors)
+    far = [k for k, i in enumerate(space.items) if i.position[2] < LOW and away(*i.rect()) > _arm(i)]
     return cut_off, far
 
 
@@ -337,11 +339,3 @@ def _arm(item: Item) -> float:
     if item.model.category == "dining_table":
         return 1.5
     return 0.9 if item.model.category.endswith(("chair", "stool")) else 0.55
-
-
-def _nearest(reach: NDArray[np.float64], box: Rect, origin: tuple[float, float]) -> float:
-    """Distance from the main floor to the nearest cell of a footprint [m]."""
-    i0, j0 = int((box[0] - origin[0]) / CELL), int((box[1] - origin[1]) / CELL)
-    i1, j1 = int((box[2] - origin[0]) / CELL) + 1, int((box[3] - origin[1]) / CELL) + 1
-    part = reach[max(i0, 0) : i1, max(j0, 0) : j1]
-    return float(part.min()) if part.size else 0.0

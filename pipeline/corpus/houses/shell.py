@@ -37,8 +37,9 @@ def surfaces(plan: Plan) -> tuple[Surface, ...]:
         shell.append(Surface("Ceiling", number, tuple(_flat(room, room.height, up=False))))
         others = [s for k, other in enumerate(sides) if k != number for s in other]
         bare = [_outer_parts(side, others) for side in sides[number]]
+        openings = [(o, wall_of(sides[number], o)) for o in plan.openings if room.room_id in o.rooms]
         for k, side in enumerate(sides[number]):
-            holes = holes_on(side, plan, room)
+            holes = [(low, high, o.sill, o.sill + o.height) for o, (wall, low, high) in openings if wall is side]
             shell.append(Surface("WallInner", number, tuple(_wall(side, 0.0, (0.0, side.length), holes, room.height, inside=True))))
             spans = _outer_spans(k, sides[number], bare)
             quads = [q for span in spans for q in _wall(side, -OUTER, span, holes, room.height, inside=False)]
@@ -48,20 +49,6 @@ def surfaces(plan: Plan) -> tuple[Surface, ...]:
     for k, opening in enumerate(plan.openings):
         shell += _reveals(plan, sides, k, opening)
     return tuple(shell)
-
-
-def holes_on(side: Side, plan: Plan, room: Room) -> list[Hole]:
-    """Return the openings of a room that lie in one of its sides."""
-    holes = []
-    for opening in plan.openings:
-        if room.room_id not in opening.rooms:
-            continue
-        (ax, ay), (bx, by) = opening.segment.tolist()
-        if side.away((ax + bx) / 2, (ay + by) / 2) > OUTER / 2 + 1e-6 or (abs(bx - ax) > 1e-9) != (side.tx != 0):
-            continue
-        low, high = side.along((min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
-        holes.append((low, high, opening.sill, opening.sill + opening.height))
-    return holes
 
 
 def _flat(room: Room, z: float, *, up: bool) -> Iterator[Quad]:

@@ -14,8 +14,8 @@ from pipeline.card import cards
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger
 from pipeline.corpus.houses.rates import load as load_rates
-from pipeline.corpus.houses.records import Item, Rect, wrap
-from pipeline.corpus.houses.room_occupancy import against, box_of, meets, problems, wall_of
+from pipeline.corpus.houses.records import Item, wrap
+from pipeline.corpus.houses.room_occupancy import Solid, against, box_of, meets, problems, wall_of
 from pipeline.corpus.houses.stock import Surfaces
 from pipeline.entities.plan import Opening
 
@@ -23,6 +23,7 @@ MARGIN = 0.01  # least distance of a thing from the edge it lies at, and from an
 TRIES = 6
 LOWEST, HIGHEST = 0.03, 1.75  # surfaces within these heights above the support's foot are used [m]
 HUNG_AT = 1.35  # underside of pictures and mirrors [m]
+Corners = tuple[np.ndarray, np.ndarray]
 
 
 def add_small_things(arranger: Arranger, openings: Sequence[Opening], kind: str) -> None:
@@ -57,7 +58,7 @@ def load(arranger: Arranger, index: int, wanted: Mapping[str, float]) -> None:
     if surfaces is None:
         return
     others = [(i.rect(), i.position[2], i.position[2] + i.size[2]) for k, i in enumerate(space.items) if k != index]
-    taken: list[tuple[np.ndarray, np.ndarray]] = []
+    taken: list[Corners] = []
     for category, expected in wanted.items():
         for _ in range(draw_count(rng, expected)):
             model = arranger.pick(category)
@@ -69,12 +70,7 @@ def load(arranger: Arranger, index: int, wanted: Mapping[str, float]) -> None:
 
 
 def _place(
-    rng: np.random.Generator,
-    model: Model,
-    support: Item,
-    surfaces: Surfaces,
-    taken: list[tuple[np.ndarray, np.ndarray]],
-    others: Sequence[tuple[Rect, float, float]],
+    rng: np.random.Generator, model: Model, support: Item, surfaces: Surfaces, taken: list[Corners], others: list[Solid]
 ) -> Item | None:
     """Return the thing on one of the support's surfaces, or None where it found no room in a few tries."""
     w, d, h = model.size
@@ -122,21 +118,18 @@ def lay_rug(arranger: Arranger, share: float) -> None:
         for x, y in places:
             for turn in (yaw, wrap(yaw + math.pi / 2)):
                 box = box_of(x, y, turn, rug.size[0], rug.size[1])
-                on = [k for k, r in floor if meets(box, r)]
-                if any(k not in tables or not _within(space.items[k].rect(), box) for k in on) or any(meets(box, r) for r in doors):
+                on = [(k, r) for k, r in floor if meets(box, r)]
+                inside = all(box[0] <= r[0] and box[1] <= r[1] and r[2] <= box[2] and r[3] <= box[3] for _, r in on)
+                if not inside or any(k not in tables for k, _ in on) or any(meets(box, r) for r in doors):
                     continue
                 if any(meets(box, r) for r, low, _ in space.solids if low < -1.0):  # a wall
                     continue
                 index = len(space.items)
                 space.items.append(Item(rug, space.number, (x, y, 0.0), turn))
-                for k in on:
+                for k, _ in on:
                     px, py, pz = space.items[k].position
                     space.items[k] = dataclasses.replace(space.items[k], position=(px, py, pz + rug.size[2]), support=index)
                 return
-
-
-def _within(inner: Rect, outer: Rect) -> bool:
-    return inner[0] >= outer[0] and inner[1] >= outer[1] and inner[2] <= outer[2] and inner[3] <= outer[3]
 
 
 def hang_curtains(arranger: Arranger, share: float, openings: Sequence[Opening]) -> None:

@@ -13,10 +13,10 @@ from pipeline import style
 from pipeline.card import cards
 from pipeline.corpus.furniture.assembly import shape_of
 from pipeline.corpus.furniture.catalogue import SERIES, Model
+from pipeline.geometry.convex import rectangle_in
 
 LEVEL = 1e-4  # vertices within this height of the highest lie on the top [m]
 LEAST = 0.07  # narrowest top that anything lies on [m]
-SHARES = (1.0, 0.96, 0.9, 0.8, 0.7, 0.6)  # what share of a top's bounds is tried: all of a board, two thirds of a disc
 STYLE_WEIGHT = 3.0  # how much likelier a model in the house's own style is taken than another
 SERIES_WEIGHT = 60.0  # the same of the series that the house's kitchen is of
 
@@ -40,26 +40,9 @@ def surfaces_of(model: Model) -> Surfaces:
         vertices = piece.solid.vertices
         boxes.append(piece.solid.bounds())
         on_top = (vertices[:, 2] > vertices[:, 2].max() - LEVEL).tolist()
-        candidates = (level(vertices[list(face)]) for face in piece.solid.faces if all(on_top[k] for k in face))
-        tops += [top for top in candidates if top is not None]
+        faces = [vertices[list(face)] for face in piece.solid.faces if all(on_top[k] for k in face)]
+        tops += [(*inside, float(face[:, 2].max())) for face in faces if (inside := rectangle_in(face[:, :2], LEAST))]
     return Surfaces(np.array(boxes).reshape(-1, 2, 3), np.array(tops).reshape(-1, 5))
-
-
-def level(corners: NDArray[np.float64]) -> tuple[float, float, float, float, float] | None:
-    """Return the largest of some rectangles, square to the axes, inside a level convex polygon (n, 3); None if it is narrow."""
-    low, high = corners[:, :2].min(axis=0), corners[:, :2].max(axis=0)
-    middle, half = (low + high) / 2, (high - low) / 2
-    edges = np.roll(corners[:, :2], -1, axis=0) - corners[:, :2]
-    signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-    for share in SHARES:
-        points = middle + signs * half * share
-        off = points[:, None, :] - corners[None, :, :2]
-        if (edges[None, :, 0] * off[..., 1] - edges[None, :, 1] * off[..., 0]).min() >= -1e-6:
-            if 2 * share * half.min() < LEAST:
-                return None
-            (x0, y0), (x1, y1) = points[0].tolist(), points[2].tolist()
-            return x0, y0, x1, y1, float(corners[:, 2].max())
-    return None
 
 
 class Stock:
@@ -78,8 +61,11 @@ class Stock:
         fitting = [m for m in models if m.size[0] >= narrowest and all(a <= b for a, b in zip(m.size, most, strict=True))]
         if not fitting:
             return None
-        series = cards()[category].corpus.series
-        wanted, more = (self._series_of(style_name), SERIES_WEIGHT) if series else (style_name, STYLE_WEIGHT)
+        wanted, more = style_name, STYLE_WEIGHT
+        if cards()[category].corpus.series:  # kitchen units are of the style's own series, where there is one
+            names, more = style.load().groups[SERIES], SERIES_WEIGHT
+            if style_name not in names and style_name in self.styles:
+                wanted = names[self.styles.index(style_name) % len(names)]
         weights = [more if m.style == wanted else 1.0 for m in fitting]
         mark = rng.random() * sum(weights)
         for model, weight in zip(fitting, weights, strict=True):
@@ -87,11 +73,6 @@ class Stock:
             if mark <= 0:
                 return model
         return fitting[-1]
-
-    def _series_of(self, style_name: str) -> str:
-        """Return the series of kitchen units that goes with a house's style: its own where there is one."""
-        names = style.load().groups[SERIES]
-        return style_name if style_name in names or style_name not in self.styles else names[self.styles.index(style_name) % len(names)]
 
     def least(self, category: str) -> tuple[float, float]:
         """Return the smallest width and depth among a category's models [m]; infinite if there is none."""

@@ -11,7 +11,8 @@ from shapely.geometry import Polygon
 from pipeline import taxonomy
 from pipeline.corpus.furniture.catalogue import catalogue
 from pipeline.corpus.houses.house import make_house
-from pipeline.corpus.houses.stock import Stock, level, surfaces_of
+from pipeline.corpus.houses.stock import LEAST, Stock, surfaces_of
+from pipeline.geometry.convex import rectangle_in
 
 SMALL = taxonomy.load().small
 HOUSES = houses(24)
@@ -116,11 +117,11 @@ def test_curtains_hang_at_windows_and_pictures_nowhere_in_a_doorway():
 
 
 def test_levels_are_rectangles_inside_their_faces():
-    board = np.array([[0, 0, 1], [1, 0, 1], [1, 0.5, 1], [0, 0.5, 1.0]])
-    assert level(board) == (0.0, 0.0, 1.0, 0.5, 1.0)
+    board = np.array([[0, 0], [1, 0], [1, 0.5], [0, 0.5]])
+    assert rectangle_in(board, LEAST) == (0.0, 0.0, 1.0, 0.5)
     angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
-    disc = np.column_stack([np.cos(angle), np.sin(angle), np.ones(24)])
-    x0, y0, x1, y1, _ = level(disc)
+    disc = np.column_stack([np.cos(angle), np.sin(angle)])
+    x0, y0, x1, y1 = rectangle_in(disc, LEAST)
     assert max(abs(x0), x1, abs(y0), y1) <= 1 / math.sqrt(2) + 1e-6
     assert x1 - x0 > 1.1
-    assert level(board * [1, 0.1, 1]) is None
+    assert rectangle_in(board * [1, 0.1], LEAST) is None
