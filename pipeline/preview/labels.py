@@ -11,6 +11,7 @@ from shapely.geometry import Polygon
 from pipeline.entities.plan import Room
 
 INK = (38, 40, 46)
+PEOPLE = frozenset({"child", "elder", "carer"})  # roles of bedrooms that name somebody
 FULL = 0.9999  # share of its bounding box that a rectangle has
 SMALL = 14  # points below which labels are no longer readable, so they are left out [pixels]
 
@@ -32,7 +33,7 @@ def summed_area_table(mask: NDArray[np.bool_]) -> NDArray[np.int32]:
 def draw_label(
     image: Image.Image, room: Room, pixels: NDArray[np.float64], busy: NDArray[np.int32], size: int
 ) -> tuple[int, int, int, int] | None:
-    """Write a room's name and area inside its outline `pixels` (n, 2), where least is below it.
+    """Write a room's name, with whose it is, and area inside its outline `pixels` (n, 2), where least is below it.
 
     `busy` (H + 1, W + 1) is the summed-area table of furniture pixels.
 
@@ -40,7 +41,8 @@ def draw_label(
     """
     draw = ImageDraw.Draw(image, "RGBA")
     name = room.type.replace("_", " ")
-    for text in (f"{name}\n{room.area:.1f} m2", f"{room.area:.0f} m2"):
+    whose = f"{room.role}'s" if room.role in PEOPLE else room.role
+    for text in (f"{whose} {name}".lstrip() + f"\n{room.area:.1f} m2", f"{name}\n{room.area:.1f} m2", f"{room.area:.0f} m2"):
         box = draw.multiline_textbbox((0, 0), text, font=font(size), spacing=2, align="center")
         width, height = int(box[2] - box[0]) + size // 2, int(box[3] - box[1]) + size // 2
         corner = _corner(Polygon(pixels), busy, width, height)
