@@ -67,16 +67,20 @@ class RoomBatch(Rows):
 
 @dataclass(frozen=True, slots=True)
 class Objects(Rows):
-    """The objects of B rooms: `classes` (B, N), C for padding; `poses` (B, N); `channels` (B, N, 40) normalised; `sweeps` (B, N, K, 2, 3) [m]."""
+    """The objects of B rooms: `classes` (B, N), C for padding; `poses` (B, N); `channels` (B, N, 40) normalised; `sweeps` (B, N, K, 2, 3) [m].
+
+    `weights` (B, N) of their errors where their poses are told.
+    """
 
     classes: Tensor
     poses: Tensor
     channels: Tensor
     sweeps: Tensor
+    weights: Tensor
 
     def first(self, slots: int) -> Objects:
         """Take the first slots; objects come first, so none is lost where a room has no more than that."""
-        return Objects(self.classes[:, :slots], self.poses[:, :slots], self.channels[:, :slots], self.sweeps[:, :slots])
+        return type(self)(*(getattr(self, f.name)[:, :slots] for f in fields(self)))
 
 
 def bucket_of(counts: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -103,7 +107,7 @@ def collate(examples: Sequence[Example], codec: Codec, slots: int) -> tuple[Room
         channels[i, :n] = codec.normalise(torch.from_numpy(example.continuous).float(), classes[i, :n])
         sweeps[i, :n] = torch.from_numpy(example.sweeps)
     rooms = room_batch([e.floor for e in examples], [e.layout for e in examples], [e.context.height for e in examples])
-    return rooms, Objects(classes, poses, channels, sweeps)
+    return rooms, Objects(classes, poses, channels, sweeps, torch.ones(len(examples), slots))
 
 
 def reflections(rng: torch.Generator, count: int) -> Tensor:
@@ -135,4 +139,4 @@ def moved_objects(objects: Objects, motion: Tensor) -> Objects:
     mirrored = (torch.linalg.det(motion) < 0)[:, None, None, None]
     low, high = objects.sweeps[..., 0, :], objects.sweeps[..., 1, :]
     turned = torch.stack([torch.cat([-high[..., :1], low[..., 1:]], -1), torch.cat([-low[..., :1], high[..., 1:]], -1)], -2)
-    return Objects(objects.classes, objects.poses, x, torch.where(mirrored[..., None], turned, objects.sweeps))
+    return replace(objects, channels=x, sweeps=torch.where(mirrored[..., None], turned, objects.sweeps))

@@ -14,7 +14,7 @@ from pipeline.diffusion.batch import collate
 from pipeline.diffusion.checkpoint import FORMAT, Header, load_weights, require_vocabulary
 from pipeline.diffusion.codec import Codec, Normalisation
 from pipeline.diffusion.inventory import Holdings, Inventory, initial_inventory, room_features
-from pipeline.diffusion.poses import UNTOLD
+from pipeline.diffusion.poses import UNTOLD, pose_weights
 from pipeline.diffusion.process_group import ProcessGroup
 from pipeline.diffusion.rooms import SHAPES, TABLES, Example, Sets, layout_weights, read_sets, stacked
 from pipeline.diffusion.set_transformer import SetTransformer
@@ -87,6 +87,7 @@ def load_released(path: Path, wanted: Header) -> tuple[SetTransformer, Inventory
 def rooms_of(examples: Sequence[Example], header: Header, device: torch.device) -> Rooms:
     """Stack examples as they are trained on."""
     rooms, objects = collate(examples, Codec(header.norm), header.slots)
+    objects = replace(objects, weights=pose_weights(objects.classes, objects.poses, len(header.norm.classes)))
     counts = np.array([len(e.classes) for e in examples], np.int64)
     return Rooms(rooms.to(device), objects.to(device), layout_weights(examples), counts)
 

@@ -67,6 +67,7 @@ def denoising_loss(net: SetTransformer, rooms: RoomBatch, objects: Objects, draw
     occupied = (classes < codec.classes)[..., None]
     xt = alpha * objects.channels + sigma * drawn.noise
     poses = objects.poses * drawn.told[:, None]
+    weights = occupied * torch.where(drawn.told[:, None], objects.weights, 1.0)[..., None]
     answers = net(xt, classes, drawn.level, rooms, before=expected_before(net, xt, objects, rooms, drawn), poses=poses)
     noise = drawn.noise
     near = torch.nonzero(drawn.level > lambda_of(settings.constraint_below))[:, 0]
@@ -81,7 +82,7 @@ def denoising_loss(net: SetTransformer, rooms: RoomBatch, objects: Objects, draw
     count = occupied.sum((1, 2)).clamp_min(1)
     terms = []
     for answer in answers:
-        error = (target - answer) ** 2 * occupied
+        error = (target - answer) ** 2 * weights
         terms.append(Loss(error[..., : YAW.stop].mean(-1).sum(1) / count, error[..., YAW.stop :].mean(-1).sum(1) / count))
     return tuple(terms)
 

@@ -22,6 +22,7 @@ POSES = ("untold", "free", "turned", "back", "corner", "side")
 UNTOLD, FREE, TURNED, BACK, CORNER, SIDE = range(len(POSES))
 CHECK, PATIENCE = 25, 12  # steps between looks at the rooms that are held out, and looks without a gain after which training stops
 AT_WALL = 0.1  # a side that is this near to a wall stands at it [m]
+RAREST = 0.01  # share of a class' objects below which a pose weighs no more
 
 
 def pose_classes(room: Arrangement) -> NDArray[np.int64]:
@@ -34,6 +35,18 @@ def pose_classes(room: Arrangement) -> NDArray[np.int64]:
     back, beside = near[:, AROUND.index("back")], near[:, [AROUND.index("left"), AROUND.index("right")]].any(1)
     poses = np.select([back & beside, back, near.any(1)], [CORNER, BACK, SIDE], FREE)
     return np.where((skew > STRAIGHT) | ~np.isfinite(gap).any(1), TURNED, poses)
+
+
+def pose_weights(classes: Tensor, poses: Tensor, padding: int) -> Tensor:
+    """Return weights (R, N) of the errors of objects of `classes` (R, N) that stand in `poses` (R, N): by the root of how rare a pose is in its class, 1 in a class' mean.
+
+    The error of a rare pose is a small part of a class' error, and so the last to be learnt. Where the pose is told, weights by it change nothing of what is expected.
+    """
+    cell = classes * len(POSES) + poses
+    count = torch.bincount(cell.flatten(), minlength=(padding + 1) * len(POSES)).view(-1, len(POSES)).float()
+    share = count / count.sum(1, keepdim=True).clamp_min(1)
+    weight = share.clamp_min(RAREST) ** -0.5
+    return (weight / (share * weight).sum(1, keepdim=True).clamp_min(RAREST)).flatten()[cell]
 
 
 class PoseModel(nn.Module):

@@ -18,7 +18,7 @@ Guide = Callable[[Tensor, float], Tensor]  # expected x0, lambda -> x0 as it is 
 Noise = Callable[[], Tensor]  # -> standard normal (B, N, 40), drawn anew
 
 TIMESTEPS = 1000
-FIRST, LAST = -6.0, 8.0  # lambda at which sampling starts, from pure noise, and at which the clean slots are taken as they are expected
+FIRST, LAST = -4.7, 9.3  # lambda at which sampling starts, from pure noise, and at which the clean slots are taken as they are expected
 
 
 def alpha_squared(first: float = 1e-4, last: float = 0.02) -> NDArray[np.float64]:

@@ -3,7 +3,20 @@ import pytest
 import torch
 
 from pipeline import seeds
-from pipeline.diffusion.poses import BACK, CORNER, FREE, POSES, SIDE, TURNED, UNTOLD, PoseModel, draw_poses, fit_poses, pose_classes
+from pipeline.diffusion.poses import (
+    BACK,
+    CORNER,
+    FREE,
+    POSES,
+    SIDE,
+    TURNED,
+    UNTOLD,
+    PoseModel,
+    draw_poses,
+    fit_poses,
+    pose_classes,
+    pose_weights,
+)
 from pipeline.relations.arrangement import make_arrangement
 from tests.diffusion.small_world import CLASSES
 
@@ -134,3 +147,14 @@ def test_rooms_of_training_are_told_how_their_objects_stand(examples):
                 poses[CLASSES[c]].add(int(p))
     assert poses["double_bed"] <= {BACK, CORNER}
     assert poses["pendant_lamp"] == {FREE}
+
+
+def test_the_rarer_a_pose_is_in_its_class_the_more_its_errors_weigh():
+    classes = torch.tensor([[BED] * 8 + [CHAIR] * 2 + [PADDING] * 2])
+    poses = torch.tensor([[BACK] * 6 + [CORNER] * 2 + [FREE] * 2 + [UNTOLD] * 2])
+    weights = pose_weights(classes, poses, PADDING)
+    assert weights.shape == classes.shape
+    beds, chairs = weights[0, :8], weights[0, 8:10]
+    assert float(beds[7] / beds[0]) == pytest.approx((6 / 2) ** 0.5, rel=1e-5)
+    assert float(beds.mean()) == pytest.approx(1.0, rel=1e-5)
+    assert chairs.tolist() == pytest.approx([1.0, 1.0])

@@ -215,6 +215,17 @@ def test_the_constraint_term_of_eq_1_has_a_switch_and_a_scale(header, data):
     torch.testing.assert_close(plain.shape, guided.shape)
 
 
+def test_errors_weigh_by_how_rare_a_pose_is_where_it_is_told(header, data):
+    net = Trainer(0, header, SETTINGS, 1, 1, CPU).net
+    drawn = draw(torch.Generator().manual_seed(0), len(data.counts), 12)
+    told = torch.arange(len(data.counts)) % 2 == 0
+    drawn = drawn._replace(told=told)
+    doubled = replace(data.objects, weights=2 * data.objects.weights)
+    once, twice = (denoising_loss(net, data.rooms, objects, drawn, SETTINGS)[-1] for objects in (data.objects, doubled))
+    torch.testing.assert_close(twice.geometry[told], 2 * once.geometry[told])
+    torch.testing.assert_close(twice.shape[~told], once.shape[~told])
+
+
 def test_g_points_down_the_penalty(examples, norm):
     codec = Codec(norm)
     rooms, objects = collate(examples, codec, 12)
