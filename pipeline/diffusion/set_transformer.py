@@ -49,6 +49,7 @@ OWN_WAYS = (
     5  # directions that an object offers itself: noisy position, axis and front, estimated axis, and the way to the room's directions
 )
 MOST = 8.0  # of a clean channel, in standard deviations
+MOST_ALIKE = 6  # objects of one class that a room's code counts: with more than any training room has it ran away
 FEW = 4  # products of fewer rows are summed in another order
 Geometry = slice(0, 8)
 SUBLAYERS = 3  # objects, floor, thought
@@ -186,7 +187,9 @@ class SetTransformer(nn.Module):
         reach = torch.linalg.vector_norm(torch.where(rooms.mask[..., None], middle, 0) + 1e-9, dim=-1).amax(1, keepdim=True)
         area = polygon_area(rooms)
         pooled = tokens.sum(1) / rooms.mask.sum(1, keepdim=True).clamp_min(1)
-        inventory = (self.kind(classes) * (classes < self.codec.classes)[..., None]).sum(1) / 4
+        ordinal = (classes[:, :, None] == classes[:, None]).tril().sum(-1)  # of each object among those of its class
+        counted = (classes < self.codec.classes) & (ordinal <= MOST_ALIKE)
+        inventory = (self.kind(classes) * counted[..., None]).sum(1) / 4
         size = torch.cat([reach / 3, area.clamp_min(0.5).log()[:, None] - 2, rooms.height[:, None] - 2.7], -1)
         room = by_room(self.room, torch.cat([pooled, inventory, size], -1)) + self.layout(rooms.layout)
         parts = self.settings.passes * (2 * self.settings.layers + 1)

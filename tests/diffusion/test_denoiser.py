@@ -1,12 +1,20 @@
+from pathlib import Path
+
+import numpy as np
 import pytest
 import torch
 
-from pipeline.diffusion.batch import collate, moved_rooms
+from pipeline import taxonomy
+from pipeline.diffusion.batch import collate, moved_rooms, room_batch
+from pipeline.diffusion.checkpoint import load_weights
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
+from pipeline.diffusion.context import RoomContext, floor_tokens
 from pipeline.diffusion.poses import POSES, TURNED, UNTOLD
-from pipeline.diffusion.set_transformer import SetTransformer
+from pipeline.diffusion.set_transformer import MOST_ALIKE, SetTransformer
 from pipeline.diffusion.settings import ModelSettings
 from tests.diffusion.small_world import LAYOUTS
+
+RELEASED = Path(__file__).parents[2] / "weights" / "denoiser.safetensors"
 
 
 @pytest.fixture(scope="module", params=[1, 2])
@@ -125,3 +133,31 @@ def test_what_is_expected_stays_within_what_data_can_be(net, noisy):
         x0 = net.expected(far * x, classes, level, rooms)
         assert torch.isfinite(x0).all()
         assert x0.abs().max() <= 8
+
+
+@torch.no_grad()
+def test_a_rooms_code_counts_no_more_of_a_class_than_rooms_have(net, noisy):
+    rooms = noisy[0]
+
+    def code(count):
+        classes = torch.full((6, 12), net.codec.classes)
+        classes[:, :count] = 0
+        return net.floor_code(rooms, classes).room
+
+    assert not torch.allclose(code(MOST_ALIKE - 1), code(MOST_ALIKE))
+    torch.testing.assert_close(code(MOST_ALIKE), code(12))
+
+
+@pytest.mark.parametrize(
+    ("kind", "table", "thing"), [("dining_room", "dining_table", "dining_chair"), ("kitchen", "sink_cabinet", "wall_cabinet")]
+)
+@pytest.mark.parametrize("count", [4, 9, 16, 23])
+@torch.no_grad()
+def test_released_weights_keep_their_heads_with_more_of_a_kind_than_they_have_seen(kind, table, thing, count):
+    net, _, header = load_weights(RELEASED)
+    context = RoomContext(kind, np.array([[0, 0], [7, 0], [7, 4.5], [0, 4.5]]), ())
+    rooms = room_batch([floor_tokens(context)], [taxonomy.load().layout_types.index(kind)], [2.7])
+    classes = torch.tensor([[header.norm.classes.index(name) for name in (table, *[thing] * count)]])
+    x = torch.randn(1, count + 1, CHANNELS, generator=torch.Generator().manual_seed(0))
+    for level in (-4.0, -1.0, 1.0):
+        assert net.eval()(x, classes, torch.tensor([level]), rooms)[-1].abs().max() < 30.0
