@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import torch
 
-from pipeline import taxonomy
 from pipeline.diffusion.batch import collate, moved_rooms, room_batch
 from pipeline.diffusion.checkpoint import load_weights
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
@@ -148,16 +147,13 @@ def test_a_rooms_code_counts_no_more_of_a_class_than_rooms_have(net, noisy):
     torch.testing.assert_close(code(MOST_ALIKE), code(12))
 
 
-@pytest.mark.parametrize(
-    ("kind", "table", "thing"), [("dining_room", "dining_table", "dining_chair"), ("kitchen", "sink_cabinet", "wall_cabinet")]
-)
-@pytest.mark.parametrize("count", [4, 9, 16, 23])
+@pytest.mark.parametrize("chairs", [4, 9, 16, 23])
 @torch.no_grad()
-def test_released_weights_keep_their_heads_with_more_of_a_kind_than_they_have_seen(kind, table, thing, count):
+def test_released_weights_draft_tables_with_more_chairs_than_they_have_seen(chairs):
     net, _, header = load_weights(RELEASED)
-    context = RoomContext(kind, np.array([[0, 0], [7, 0], [7, 4.5], [0, 4.5]]), ())
-    rooms = room_batch([floor_tokens(context)], [taxonomy.load().layout_types.index(kind)], [2.7])
-    classes = torch.tensor([[header.norm.classes.index(name) for name in (table, *[thing] * count)]])
-    x = torch.randn(1, count + 1, CHANNELS, generator=torch.Generator().manual_seed(0))
+    context = RoomContext("dining_room", np.array([[0, 0], [7, 0], [7, 4.5], [0, 4.5]]), ())
+    rooms = room_batch([floor_tokens(context)], [header.layouts.index("dining_room")], [2.7])
+    classes = torch.tensor([[header.norm.classes.index(name) for name in ("dining_table", *["dining_chair"] * chairs)]])
+    x = torch.randn(1, chairs + 1, CHANNELS, generator=torch.Generator().manual_seed(0))
     for level in (-4.0, -1.0, 1.0):
         assert net.eval()(x, classes, torch.tensor([level]), rooms)[-1].abs().max() < 30.0
