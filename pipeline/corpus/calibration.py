@@ -65,15 +65,13 @@ def tally(house: House, scene: Json, reference: Reference) -> HouseTally:
         items = [i for i in house.items if i.room == number and reference.counted(i.model.category)]
         polygon = Polygon(room.polygon)
         shapes = [Polygon(i.corners()) for i in items]
+        house_tally.rooms.append(_room(room.type, polygon, items, shapes))
         for item, shape in zip(items, shapes, strict=True):
             objects += 1
             outside += not polygon.covers(shape) and shape.intersection(polygon).area < 0.95 * shape.area
             oblique += abs(math.sin(2 * item.yaw)) > 0.035
-        standing = [s for i, s in zip(items, shapes, strict=True) if i.position[2] < STANDING]
-        house_tally.rooms.append(_room(room.type, polygon, items, standing))
-        for one, other in itertools.combinations(standing, 2):
-            pairs += 1
-            overlapping += one.intersection(other).area > 0.01 * min(one.area, other.area)
+        count, together = _overlaps(items, shapes)
+        overlapping, pairs = overlapping + count, pairs + together
         relate(items, house_tally.relations)
     house_tally.shares = _defects(scene) | {
         "outside": (outside, objects),
@@ -84,13 +82,22 @@ def tally(house: House, scene: Json, reference: Reference) -> HouseTally:
     return house_tally
 
 
-def _room(room_type: str, polygon: Polygon, items: Sequence[Item], standing: Sequence[Polygon]) -> RoomTally:
+def _room(room_type: str, polygon: Polygon, items: Sequence[Item], shapes: Sequence[Polygon]) -> RoomTally:
     x0, y0, x1, y1 = polygon.bounds
-    share = 1.0 - unary_union(standing).intersection(polygon).area / polygon.area if len(items) >= 3 else None
+    share = None
+    if len(items) >= 3:
+        standing = [s for i, s in zip(items, shapes, strict=True) if i.position[2] < STANDING]
+        share = 1.0 - unary_union(standing).intersection(polygon).area / polygon.area if standing else 1.0
     mirrored = any(min(i.scale) < 0 for i in items)
     categories = tuple(i.model.category for i in items)
     rectangular = polygon.area > 0.99 * (x1 - x0) * (y1 - y0)
     return RoomTally(room_type.lower(), float(polygon.area), rectangular, max(x1 - x0, y1 - y0), categories, mirrored, share)
+
+
+def _overlaps(items: Sequence[Item], shapes: Sequence[Polygon]) -> tuple[int, int]:
+    """Return how many pairs of things on the floor overlap by more than 1 % of the smaller, and how many pairs there are."""
+    pairs = list(itertools.combinations([s for i, s in zip(items, shapes, strict=True) if i.position[2] < STANDING], 2))
+    return sum(one.intersection(other).area > 0.01 * min(one.area, other.area) for one, other in pairs), len(pairs)
 
 
 def local(frame: Item, item: Item) -> tuple[float, float]:
@@ -176,20 +183,14 @@ def calibration(houses: Sequence[HouseTally], models: Sequence[Model], centimetr
     groups: dict[str, Any] = {"houses": len(houses), "rooms": len(rooms), "frequencies": {}, "histograms": {}, "classes": {}}
     for name, kind in reference.classes.items():
         kept = filter_rooms(rooms, kind)
-        labels = Counter(label for labels in kept for label in labels)
-        total, whole = max(1, sum(labels.values())), sum(kind.counts.values())
-        shares = {c: {"ours": round(labels[c] / total, 4), "reference": round(n / whole, 4)} for c, n in kind.counts.items()}
-        groups["frequencies"][name] = shares
+        groups["frequencies"][name] = frequencies(kept, kind)
         ours, theirs = histogram([len(labels) for labels in kept]), histogram([n for n in kind.objects if n >= 3])
         bins = zip(HISTOGRAM, ours, theirs, strict=True)
         groups["histograms"][name] = {f"{a}-{b}": {"ours": x, "reference": y} for (a, b), x, y in bins}
-        apart = 0.5 * sum(abs(s["ours"] - s["reference"]) for s in shares.values())
+        apart = 0.5 * sum(abs(s["ours"] - s["reference"]) for s in groups["frequencies"][name].values())
         mean = float(np.mean([len(labels) for labels in kept])) if kept else 0.0
         shape = 0.5 * sum(abs(a - b) for a, b in zip(ours, theirs, strict=True))
-        counted, p = sum(v >= 3 for v in kind.objects), np.asarray(theirs) / sum(theirs)
-        draws = seeds.generator(0, "corpus.calibration.histogram").multinomial(counted, p, known.RESAMPLES) / counted
-        # So far are resamples of the 12 scenes' histogram from it, at most.
-        noise, n = float(np.percentile(0.5 * np.abs(draws - p).sum(axis=1), 97.5)), len(kept)
+        noise, n = _histogram_noise(kind, theirs), len(kept)
         groups["classes"] |= {
             f"{name}: total variation of class frequencies": figure(apart, 0.0, (0.0, TOTAL_VARIATION), n, "bar"),
             f"{name}: objects per room": figure(mean, kind.mean, within(kind.mean), n, "bar"),
@@ -228,9 +229,24 @@ def filter_rooms(rooms: Iterable[RoomTally], kind: Classes) -> list[list[str]]:
     return kept
 
 
+def frequencies(kept: Sequence[Sequence[str]], kind: Classes) -> dict[str, dict[str, float]]:
+    """Return the share of each label among the objects, beside the reference's."""
+    counted = Counter(label for labels in kept for label in labels)
+    total, whole = max(1, sum(counted.values())), sum(kind.counts.values())
+    return {c: {"ours": round(counted[c] / total, 4), "reference": round(n / whole, 4)} for c, n in kind.counts.items()}
+
+
 def histogram(counts: Sequence[int]) -> list[float]:
     """Return the shares of rooms by number of objects."""
     return [round(sum(a <= n <= b for n in counts) / max(1, len(counts)), 4) for a, b in HISTOGRAM]
+
+
+def _histogram_noise(kind: Classes, theirs: Sequence[float]) -> float:
+    """Return the 97.5 % quantile of the total variation between the 12 scenes' histogram and resamples of it."""
+    n = sum(v >= 3 for v in kind.objects)
+    p = np.asarray(theirs) / sum(theirs)
+    draws = seeds.generator(0, "corpus.calibration.histogram").multinomial(n, p, known.RESAMPLES) / n
+    return float(np.percentile(0.5 * np.abs(draws - p).sum(axis=1), 97.5))
 
 
 def _rooms_by_house(houses: Sequence[HouseTally], reference: Reference) -> dict[str, Figure]:

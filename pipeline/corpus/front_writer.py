@@ -15,6 +15,7 @@ from pipeline.corpus.furniture.finishes import one_of
 from pipeline.corpus.houses import shell
 from pipeline.corpus.houses.corruption import Litter
 from pipeline.corpus.houses.records import House, Item
+from pipeline.entities.plan import Opening
 
 Dialect = Literal["0.4", "0.11"]
 DIALECTS: tuple[Dialect, Dialect] = ("0.4", "0.11")
@@ -31,7 +32,7 @@ MATERIALS = {
     "Window": [220, 225, 228, 255],
 }
 TITLES = {"swing": "door/single swing door", "sliding": "door/sliding door", "entry": "door/entrance door", "window": "window/window"}
-GARBAGE_NORMAL = [-3.932, 1, -2.043]  # what floors of the 0.4 dialect carry for normals
+GARBAGE_NORMAL = (-3.932, 1, -2.043)  # what floors of the 0.4 dialect carry for normals
 
 
 class SceneFile:
@@ -88,11 +89,10 @@ class SceneFile:
         uv: list[float] = []
         faces: list[int] = []
         for k, quad in enumerate(surface.quads):
-            a, b, c = np.array(quad[:3])
-            nx, ny, nz = np.cross(b - a, c - a) / np.linalg.norm(np.cross(b - a, c - a))
-            n = [round(nx), round(nz), round(-ny)] if surface.type != "Floor" or self.dialect != "0.4" else GARBAGE_NORMAL
-            xyz += [c for x, y, z in quad for c in (round(x, 5), round(z, 5), round(0.0 - y, 5))]
-            normal += 4 * n
+            n = GARBAGE_NORMAL if surface.type == "Floor" and self.dialect == "0.4" else _normal(quad)
+            for x, y, z in quad:
+                xyz += [round(x, 5), round(z, 5), round(0.0 - y, 5)]
+                normal += n
             width, height = round(math.dist(quad[0], quad[1]), 3), round(math.dist(quad[1], quad[2]), 3)
             uv += [0, 0, width, 0, width, height, 0, height]
             faces += [4 * k, 4 * k + 1, 4 * k + 2, 4 * k, 4 * k + 2, 4 * k + 3]
@@ -121,10 +121,7 @@ class SceneFile:
                 uid = self.uid("model")
                 self.furniture.append({"uid": uid, "jid": jids[kind], "aid": []} | self.newer(title=TITLES[kind], type="standard"))
                 refs.insert(0, uid)
-                (ax, ay), (bx, by) = opening.segment.tolist()
-                turn = quaternion(0.0 if abs(bx - ax) > abs(by - ay) else math.pi / 2)
-                pose = {"pos": [_r((ax + bx) / 2), _r(opening.sill), _r(-(ay + by) / 2)], "rot": turn, "scale": [1, 1, 1]}
-                self.child(self.rooms[numbers[opening.rooms[0]]], "furniture", uid, pose)
+                self.child(self.rooms[numbers[opening.rooms[0]]], "furniture", uid, _leaf_pose(opening))
             if opening.kind in {"door", "entrance"}:
                 home = opening.swing.room_id if opening.swing else opening.rooms[0]
                 side = "Left" if opening.swing and opening.swing.hinge == 0 else "Right"
@@ -141,7 +138,7 @@ class SceneFile:
             self.furniture.append(record)
             x, y, z = item.position
             sx, sy, sz = item.scale
-            pose: Json = {"pos": [_r(x), _r(z), _r(-y)], "rot": quaternion(item.yaw), "scale": [_r(sx), _r(sz), _r(sy)]}
+            pose: Json = {"pos": [_r(x), _r(z), _r(-y)], "rot": quaternion(item.yaw), "scale": [_s(sx), _s(sz), _s(sy)]}
             if replaced:
                 box = dict(zip(("xLen", "yLen", "zLen"), (_r(100 * v) for v in item.model.size), strict=True))
                 pose |= {"replace_jid": item.model.model_id, "replace_bbox": box}
@@ -245,7 +242,25 @@ def _identity() -> Json:
     return {"pos": [0, 0, 0], "rot": [0, 0, 0, 1], "scale": [1, 1, 1]}
 
 
+def _normal(quad: shell.Quad) -> list[float]:
+    """Return the unit normal of a quad in 3D-FRONT's frame."""
+    a, b, c = np.array(quad[:3])
+    x, y, z = np.cross(b - a, c - a)
+    length = math.hypot(x, y, z)
+    return [round(x / length), round(z / length), round(-y / length)]
+
+
+def _leaf_pose(opening: Opening) -> Json:
+    (ax, ay), (bx, by) = opening.segment.tolist()
+    yaw = 0.0 if abs(bx - ax) > abs(by - ay) else math.pi / 2
+    return {"pos": [_r((ax + bx) / 2), _r(opening.sill), _r(-(ay + by) / 2)], "rot": quaternion(yaw), "scale": [1, 1, 1]}
+
+
 def _r(value: float) -> float:
     """Round to 5 decimals, without a negative zero; whole numbers as the real files have them."""
     rounded = round(value, 5) + 0.0
     return int(rounded) if rounded == int(rounded) else rounded
+
+
+def _s(scale: float) -> float:
+    return _r(scale) if abs(scale) != 1 else int(scale)

@@ -49,7 +49,7 @@ OWN_WAYS = (
     5  # directions that an object offers itself: noisy position, axis and front, estimated axis, and the way to the room's directions
 )
 MOST = 8.0  # of a clean channel, in standard deviations
-MOST_ALIKE = 6  # objects of one class that a room's code counts: with more than any training room has it ran away
+MOST_ALIKE = 6  # objects of one class that a room's code counts: by more than any training room has the answer ran away
 FEW = 4  # products of fewer rows are summed in another order
 Geometry = slice(0, 8)
 SUBLAYERS = 3  # objects, floor, thought

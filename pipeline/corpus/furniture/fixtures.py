@@ -13,7 +13,7 @@ from pipeline.corpus.furniture.casework import Case, Cell, Column, case
 from pipeline.corpus.furniture.catalogue import series_rng
 from pipeline.corpus.furniture.finishes import COLORS, Finish, Finishes, Material, draw_material, one_of, pick
 from pipeline.corpus.furniture.fronts import FrontStyle, Rect, lid, panel, reach, top_button
-from pipeline.corpus.furniture.intervals import Interval, around, between, edges, inset
+from pipeline.corpus.furniture.intervals import Interval, Spot, around, between, edges, inset
 from pipeline.corpus.furniture.shape import UP, Axis3, Mover, Pieces, Shape, group_pieces, join_shapes, pieces, staves
 from pipeline.corpus.furniture.solids import at_height, box, circle, cushion, revolve, ring, rod, rounded_rectangle, shell, slab, stack
 from pipeline.corpus.furniture.storage import front_style
@@ -131,17 +131,22 @@ def vanity(rng: np.random.Generator, form: str, w: float, d: float, h: float, fi
     face = -d / 2 + max(reach(how.style.handle), how.overhang)
     if vessel:
         r, middle = min(0.36 * (d - 0.1), 0.19), (face + d / 2 - 0.11) / 2
-        rx, low = min(r * 1.2, 0.4 * w), body + 0.012
-
-        def oval(scale: float, height: float) -> NDArray[np.float64]:
-            return at_height(circle(rx * scale, 24, (0.0, middle), r / rx), height)
-
-        wall = shell([oval(0.72, low), oval(1.0, body + 0.12)], [oval(0.66, low), oval(0.94, body + 0.12)])  # it flares upwards
-        basin = staves("basin", wall, "ceramic") + pieces("basin_floor", stack([oval(0.70, body), oval(0.72, low)]), "ceramic")
+        basin = _vessel(min(r * 1.2, 0.4 * w), r, (0.0, middle), (body, body + 0.12))
         return join_shapes(shape, Shape(basin), tap(d / 2 - 0.045, body, h - body, 0.13, finishes.handle))
     hole = around(min(0.26, 0.5 * w - 0.07)), (face + 0.06, d / 2 - 0.11)
     shape = _sink_into_top(shape, *hole, body - 0.002, 0.13, "ceramic")
     return join_shapes(shape, tap(d / 2 - 0.055, body, h - body, 0.13, finishes.handle))
+
+
+def _vessel(rx: float, ry: float, centre: Spot, z: Interval) -> Pieces:
+    """Return an oval open basin that stands on a counter, its wall flaring upwards."""
+
+    def oval(scale: float, height: float) -> NDArray[np.float64]:
+        return at_height(circle(rx * scale, 24, centre, ry / rx), height)
+
+    low = z[0] + 0.012
+    wall = shell([oval(0.72, low), oval(1.0, z[1])], [oval(0.66, low), oval(0.94, z[1])])
+    return staves("basin", wall, "ceramic") + pieces("basin_floor", stack([oval(0.70, z[0]), oval(0.72, low)]), "ceramic")
 
 
 def _oval(rx: float, y: Interval, z: float) -> NDArray[np.float64]:

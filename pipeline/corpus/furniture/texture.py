@@ -265,12 +265,9 @@ def paint(rng: np.random.Generator, sheet: Atlas) -> bytes:
     image = np.zeros((sheet.height, sheet.width), np.uint8)
     shades = min(SHADES, 256 // len(sheet.fields))
     palette = np.zeros((shades * len(sheet.fields), 3))
-    levels = np.linspace(0, 1, shades)[:, None]
+    levels = np.linspace(0, 1, shades)
     for k, (finish, (x, width, height)) in enumerate(sheet.fields.items()):
-        color, contrast = np.array(finish.color), CONTRAST.get(finish.pattern, 0.0)
-        second = None if finish.second is None else np.array(finish.second)
-        colors = color * (1 + contrast * (2 * levels - 1)) if second is None else color + levels * (second - color)
-        palette[k * shades : (k + 1) * shades] = colors
+        palette[k * shades : (k + 1) * shades] = _colors(finish, levels)
         spot = image[sheet.height - height :, x : x + width]
         if finish.pattern == "plain":
             spot[:] = k * shades + shades // 2
@@ -279,3 +276,11 @@ def paint(rng: np.random.Generator, sheet: Atlas) -> bytes:
             spot[:] = k * shades + np.minimum(tone * shades, shades - 1).astype(np.uint8)
     colors = np.round(255 * display(np.clip(palette, 0, 1))).astype(np.uint8)
     return png.encode(np.pad(image, ((0, 0), (1, 0))), sheet.width, LEVEL, colors.tobytes())
+
+
+def _colors(finish: Finish, tones: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return linear colours (n, 3) of tones from 0 to 1: from the finish's colour to its second, or about its colour."""
+    color = np.array(finish.color)
+    if finish.second is not None:
+        return np.asarray(color + tones[:, None] * (np.array(finish.second) - color))
+    return np.asarray(color * (1 + CONTRAST[finish.pattern] * (2 * tones[:, None] - 1)))

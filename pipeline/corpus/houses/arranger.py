@@ -87,16 +87,18 @@ class Arranger:
         for desk in self.smaller(table, 6, 0.9):
             spot = against(self.rng, self.space, desk, front=front, corner=0.55)
             if spot is not None and self.space.try_add(desk, spot):
-                if seat is None:
-                    return True
-                off = float(self.rng.uniform(0.02, 0.1))
-                turn = float(self.rng.normal(0, 0.4)) if self.chance(0.85) else 0.0
-                place = shift_spot(spot, float(self.rng.normal(0, 0.04)), desk.size[1] / 2 + seat.size[1] / 2 + off, math.pi)
-                askew = shift_spot(place, 0.0, -0.1 if turn else 0.0, turn)  # as somebody left it, where there is room for that
-                if self.space.nestle(seat, askew) or self.space.nestle(seat, place):
+                if seat is None or self._sit(seat, spot, desk.size[1]):
                     return True
                 self.space.take_back()
         return False
+
+    def _sit(self, seat: Model, spot: Spot, depth: float) -> bool:
+        """Put a chair before a desk of that depth, turned as somebody left it; straight where there is no room for that."""
+        off = float(self.rng.uniform(0.02, 0.1))
+        turn = float(self.rng.normal(0, 0.4)) if self.chance(0.85) else 0.0
+        place = shift_spot(spot, float(self.rng.normal(0, 0.04)), depth / 2 + seat.size[1] / 2 + off, math.pi)
+        askew = shift_spot(place, 0.0, -0.1 if turn else 0.0, turn)
+        return self.space.nestle(seat, askew) or self.space.nestle(seat, place)
 
     def in_corner(self, category: str, front: float | None = None) -> bool:
         """Put a chair or plant into a corner, often turned towards the room."""

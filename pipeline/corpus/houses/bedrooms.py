@@ -26,23 +26,33 @@ def furnish_bedroom(arranger: Arranger) -> None:
     pieces = arranger.wishes("pieces")
     if bed is not None and "tv_stand" in pieces:
         tv_opposite(arranger, bed)
-    others = [p for p in pieces if p != "tv_stand"]
-    for piece in others[::-1] if arranger.chance(0.5) else others:
+    at_walls(arranger, [p for p in pieces if p != "tv_stand"])
+    if bed is not None and arranger.wants("bench"):
+        bed_end_stool(arranger, bed)
+    extras(arranger)
+    if arranger.wants("wall_lamp"):
+        arranger.on_wall("wall_lamp", 1.5)
+    arranger.light([(bed[1].x, bed[1].y)] if bed is not None and arranger.wants("lamp_over_bed") else [])
+
+
+def at_walls(arranger: Arranger, pieces: list[str]) -> None:
+    """Put desks with their chairs and other large pieces to the walls, in either order."""
+    if arranger.chance(0.5):
+        pieces.reverse()
+    for piece in pieces:
         if piece in {"desk", "dressing_table"}:
             arranger.pair_at_wall(piece)
         else:
             arranger.at_wall(piece, corner=0.8, tries=6)
-    if bed is not None and arranger.wants("bench"):
-        model, spot = bed
-        stool = arranger.pick("stool", width=model.size[0], depth=0.6)
-        if stool is not None:
-            foot = model.size[1] / 2 + stool.size[1] / 2 + 0.04
-            arranger.space.nestle(stool, shift_spot(spot, float(arranger.rng.normal(0, 0.04)), foot))
+
+
+def extras(arranger: Arranger) -> None:
+    """Put the smaller pieces that the room wants: seats into corners, the others to walls."""
     for category in arranger.wishes("extras"):
-        (arranger.in_corner if category in SEATS else arranger.at_wall)(category)
-    if arranger.wants("wall_lamp"):
-        arranger.on_wall("wall_lamp", 1.5)
-    arranger.light([(bed[1].x, bed[1].y)] if bed is not None and arranger.wants("lamp_over_bed") else [])
+        if category in SEATS:
+            arranger.in_corner(category)
+        else:
+            arranger.at_wall(category)
 
 
 def place_bed(arranger: Arranger, category: str) -> tuple[Model, Spot] | None:
@@ -138,3 +148,13 @@ def tv_opposite(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
             if 0.6 < away - model.size[1] / 2 - stand.size[1] / 2 < FARTHEST_TV and space.try_add(stand, place, clearances=[before]):
                 return True
     return False
+
+
+def bed_end_stool(arranger: Arranger, bed: tuple[Model, Spot]) -> bool:
+    """Put a bench at the foot of the bed."""
+    model, spot = bed
+    stool = arranger.pick("stool", width=model.size[0], depth=0.6)
+    if stool is None:
+        return False
+    place = shift_spot(spot, float(arranger.rng.normal(0, 0.04)), model.size[1] / 2 + stool.size[1] / 2 + 0.04)
+    return arranger.space.nestle(stool, place)

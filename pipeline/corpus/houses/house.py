@@ -2,7 +2,7 @@
 
 import uuid
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from pipeline import taxonomy
@@ -75,14 +75,21 @@ def tidy(space: Space) -> None:
         standing = [k for k, i in enumerate(space.items) if i.position[2] < 1.0]
         if not standing:
             break
-        items, scores = space.items, []
-        for k in reversed(standing) if not far else ():  # whose removal joins the most doors; the latest of equals
-            space.items = items[:k] + items[k + 1 :]
-            scores.append((problems(space)[0], -k))
-        space.items = items
-        items.pop(far[-1] if far else -min(scores)[1])
+        victim = far[-1] if far else _culprit(space, standing)
+        space.items.pop(victim)
     walls = sum(low < -1.0 for _, low, _ in space.solids)
     space.solids[walls:] = [(i.rect(), i.position[2], i.position[2] + i.size[2]) for i in space.items]
+
+
+def _culprit(space: Space, standing: list[int]) -> int:
+    """Return the item whose removal joins the most doors; the latest of equals."""
+    items = space.items
+    scores = []
+    for k in reversed(standing):
+        space.items = items[:k] + items[k + 1 :]
+        scores.append((problems(space)[0], -k))
+    space.items = items
+    return -min(scores)[1]
 
 
 def make_house(seed: int, index: int, stock: Stock) -> House:
@@ -91,22 +98,32 @@ def make_house(seed: int, index: int, stock: Stock) -> House:
     wanted = agenda(seed, index)
     plan = make_plan(rng, wanted.rooms)
     style = str(rng.choice(stock.styles)) if stock.styles else ""  # what the house prefers
-    left = Counter("Hallway" if t in CORRIDORS else t for t in wanted.rooms)  # what the agenda asks for: the first rooms of each type
+    rich = set(rooms_to_furnish(plan, wanted.rooms))
     beyond, bare = front_statistics.load().beyond, rates.load()["bare"]
     items: list[Item] = []
     empty = []
     counts: Counter[str] = Counter()
     for number, room in enumerate(plan.rooms):
-        kind, name = layout_type(room.type), "Hallway" if room.type in CORRIDORS else room.type
-        rich = left[name] > 0
-        left[name] -= rich
+        kind = layout_type(room.type)
         extra = room.type.lower() in beyond or kind in {"hallway", "storage"}
         placed: tuple[Item, ...] = ()
-        if rich or (kind and extra and rng.random() >= bare[kind]):
+        if number in rich or (kind and extra and rng.random() >= bare[kind]):
             recipe = KINDS[room.type]
             deal = wanted.deal(seed, room.type, counts[recipe], index % BLOCK)
             counts[recipe] += 1
-            placed = furnish_room(seed, index, number, plan, stock, style, deal, rich=rich)
+            placed = furnish_room(seed, index, number, plan, stock, style, deal, rich=number in rich)
         items += [item if item.support < 0 else replace(item, support=item.support + len(items)) for item in placed]
         empty.append(not placed)
     return House(str(uuid.UUID(int=key(seed, "uid", index), version=4)), index, plan, tuple(items), tuple(empty))
+
+
+def rooms_to_furnish(plan: Plan, furnished: Sequence[str]) -> list[int]:
+    """Return the rooms that are furnished as the agenda asks for: the first ones of each type."""
+    left = Counter("Hallway" if t in CORRIDORS else t for t in furnished)
+    numbers = []
+    for number, room in enumerate(plan.rooms):
+        name = "Hallway" if room.type in CORRIDORS else room.type
+        if left[name]:
+            left[name] -= 1
+            numbers.append(number)
+    return numbers

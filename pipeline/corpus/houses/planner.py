@@ -145,17 +145,8 @@ def _block(seed: int, block: int) -> tuple[Agenda, ...]:
     rng = generator(seed, "agenda", block)
     weights: Mapping[str, float] = rates.load()["agenda"]
     names, shares = list(weights), np.array(list(weights.values()))
-    houses = np.array(front_statistics.load().furnished_rooms, float)  # by their number of furnished rooms: the observed shares, evenly
-    marks = (np.arange(BLOCK) + rng.random()) / BLOCK
-    numbers = rng.permutation(np.searchsorted(np.cumsum(houses) / houses.sum(), marks))
-    drawn = [_rooms(rng, names, shares, int(n) + 1) for n in numbers]
-    # Of the living rooms of houses without a dining room a share are dining rooms as well.
-    alone = [k for k, rooms in enumerate(drawn) if "living" in rooms and "DiningRoom" not in rooms]
-    marks = (rng.permutation(len(alone)) + rng.random()) / max(1, len(alone))
-    share = float(rates.load()["living_dining"])  # type: ignore[arg-type]
-    both = {k for k, mark in zip(alone, marks, strict=True) if mark < share}
-    living = ["LivingDiningRoom" if k in both else "LivingRoom" for k in range(len(drawn))]
-    typed = [tuple(name if t == "living" else t for t in rooms) for name, rooms in zip(living, drawn, strict=True)]
+    drawn = [_rooms(rng, names, shares, n) for n in _numbers(rng)]
+    typed = _living(rng, drawn)
     totals = Counter(KINDS[t] for rooms in typed for t in rooms)
     counts: Counter[str] = Counter()
     agendas = []
@@ -163,6 +154,14 @@ def _block(seed: int, block: int) -> tuple[Agenda, ...]:
         agendas.append(Agenda(block, rooms, {kind: (counts[kind], total) for kind, total in totals.items()}))
         counts.update(KINDS[t] for t in rooms)
     return tuple(agendas)
+
+
+def _numbers(rng: np.random.Generator) -> list[int]:
+    """Return how many rooms each house of a block furnishes: the observed shares, evenly."""
+    houses = np.array(front_statistics.load().furnished_rooms, float)
+    edges = np.cumsum(houses) / houses.sum()
+    marks = (np.arange(BLOCK) + rng.random()) / BLOCK
+    return [int(n) + 1 for n in rng.permutation(np.searchsorted(edges, marks))]
 
 
 def chances(shares: NDArray[np.float64], number: int) -> NDArray[np.float64]:
@@ -186,6 +185,16 @@ def _rooms(rng: np.random.Generator, names: list[str], shares: NDArray[np.float6
         rooms = tuple(names[i].removesuffix("_2") for i in sorted(picks))
         if sum(t in PRIVATE for t in rooms) <= MOST_PRIVATE:
             return rooms
+
+
+def _living(rng: np.random.Generator, drawn: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Say which living rooms are dining rooms as well: those of houses without a dining room, in their share."""
+    alone = [k for k, rooms in enumerate(drawn) if "living" in rooms and "DiningRoom" not in rooms]
+    share = float(rates.load()["living_dining"])  # type: ignore[arg-type]
+    marks = (rng.permutation(len(alone)) + rng.random()) / max(1, len(alone))
+    both = {k for k, mark in zip(alone, marks, strict=True) if mark < share}
+    names = ["LivingDiningRoom" if k in both else "LivingRoom" for k in range(len(drawn))]
+    return [tuple(name if t == "living" else t for t in rooms) for name, rooms in zip(names, drawn, strict=True)]
 
 
 def make_plan(rng: np.random.Generator, furnished: Sequence[str]) -> Plan:

@@ -61,11 +61,8 @@ class Stock:
         fitting = [m for m in models if m.size[0] >= narrowest and all(a <= b for a, b in zip(m.size, most, strict=True))]
         if not fitting:
             return None
-        wanted, more = style_name, STYLE_WEIGHT
-        if cards()[category].corpus.series:  # kitchen units are of the style's own series, where there is one
-            names, more = style.load().groups[SERIES], SERIES_WEIGHT
-            if style_name not in names and style_name in self.styles:
-                wanted = names[self.styles.index(style_name) % len(names)]
+        series = cards()[category].corpus.series
+        wanted, more = (self._series_of(style_name), SERIES_WEIGHT) if series else (style_name, STYLE_WEIGHT)
         weights = [more if m.style == wanted else 1.0 for m in fitting]
         mark = rng.random() * sum(weights)
         for model, weight in zip(fitting, weights, strict=True):
@@ -73,6 +70,11 @@ class Stock:
             if mark <= 0:
                 return model
         return fitting[-1]
+
+    def _series_of(self, style_name: str) -> str:
+        """Return the series of kitchen units that goes with a house's style: its own where there is one."""
+        names = style.load().groups[SERIES]
+        return style_name if style_name in names or style_name not in self.styles else names[self.styles.index(style_name) % len(names)]
 
     def least(self, category: str) -> tuple[float, float]:
         """Return the smallest width and depth among a category's models [m]; infinite if there is none."""

@@ -49,8 +49,10 @@ def _first_guess(room: RoomReq, rooms: Sequence[RoomReq], scale: float) -> float
 def _default(room: RoomReq, rooms: Sequence[RoomReq]) -> float:
     if room.type == "bedroom":
         beds = [r for r in rooms if r.type == "bedroom"]
-        named = [r for r in beds if r.role == "primary"]
-        if room in named or (not named and len(beds) > 1 and room is next((r for r in beds if r.role not in OTHERS), None)):
+        primary = [r for r in beds if r.role == "primary"]
+        if not primary and len(beds) > 1:
+            primary = [r for r in beds if r.role not in OTHERS][:1]
+        if room in primary:
             return PRIMARY_BEDROOM
         return (PRIMARY_BEDROOM + DEFAULTS["bedroom"].area) / 2 if len(beds) == 1 else DEFAULTS["bedroom"].area
     if room.type == "kitchen" and "dining" in room.functions:
