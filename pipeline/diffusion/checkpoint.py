@@ -15,7 +15,7 @@ from pipeline.errors import ContentError
 from pipeline.manifest import canonical
 from pipeline.tensors import build_header, flatten, grouped, load_state, load_tensors, read_header, save_tensors
 
-FORMAT = "sfgen-denoiser-6"
+FORMAT = "sfgen-denoiser-7"
 REMEDY = "run `make run`, or `dvc repro train`, which makes it"
 
 

@@ -49,7 +49,7 @@ OWN_WAYS = (
     5  # directions that an object offers itself: noisy position, axis and front, estimated axis, and the way to the room's directions
 )
 MOST = 8.0  # of a clean channel, in standard deviations
-MOST_ALIKE = 6  # objects of one class that a room's code counts: by more than any training room has the answer ran away
+UNBOUNDED = 1e6  # of a room's code, until training ends
 FEW = 4  # products of fewer rows are summed in another order
 Geometry = slice(0, 8)
 SUBLAYERS = 3  # objects, floor, thought
@@ -166,6 +166,8 @@ class SetTransformer(nn.Module):
         self.floor_in = nn.Sequential(nn.Linear(FLOOR_FEATURES, width), nn.SiLU(), nn.Linear(width, width))
         self.layout = nn.Embedding(layouts, width)
         self.room = nn.Sequential(nn.Linear(2 * width + 3, width), nn.SiLU(), nn.Linear(width, width))
+        self.room_bounds: Tensor
+        self.register_buffer("room_bounds", torch.tensor([[-UNBOUNDED], [UNBOUNDED]]).repeat(1, width))
         self.level = nn.Sequential(nn.Linear(33, width), nn.SiLU(), nn.Linear(width, width))
         self.floor_keys = nn.Linear(width, settings.passes * (2 * settings.layers + 1) * width)
         self.passes = nn.ModuleList(Pass(settings) for _ in range(settings.passes))
@@ -177,23 +179,45 @@ class SetTransformer(nn.Module):
 
     def floor_code(self, rooms: RoomBatch, classes: Tensor, layout: BatchLayout | None = None) -> FloorCode:
         """Encode the rooms and what they will hold, `classes` (B, N), for a `layout` of their objects, padded by default; independent of the noise level, so a sampler calls it once."""
+        tokens = self._floor_tokens(rooms)
+        parts = self.settings.passes * (2 * self.settings.layers + 1)
+        keys = (layout or self._padded(rooms, classes)).split_keys(self.floor_keys(tokens), parts)
+        return FloorCode(keys, self._room_code(rooms, classes, tokens).clamp(*self.room_bounds))
+
+    @torch.no_grad()
+    def bound_rooms(self, rooms: RoomBatch, classes: Tensor) -> None:
+        """Keep the codes of rooms from now on, channel by channel, within those of these rooms, on which it was trained.
+
+        Where a room unlike them wakes a channel that none of them does, what comes after has never been trained, and the answer runs away.
+        """
+        self.unbound_rooms()
+        parts = torch.arange(len(rooms)).split(512)
+        codes = [self._room_code(rooms.rows(rows), classes[rows], self._floor_tokens(rooms.rows(rows))) for rows in parts]
+        self.room_bounds.copy_(torch.stack(torch.cat(codes).aminmax(dim=0)))
+
+    def unbound_rooms(self) -> None:
+        """Let the codes of rooms be what they are, as training needs it."""
+        self.room_bounds[0], self.room_bounds[1] = -UNBOUNDED, UNBOUNDED
+
+    def _floor_tokens(self, rooms: RoomBatch) -> Tensor:
         ends, middle = rooms.ends, rooms.ends.mean(2)
         length = torch.linalg.vector_norm(ends[:, :, 1] - ends[:, :, 0] + 1e-9, dim=-1)
         kind = nn.functional.one_hot(rooms.kind, len(KINDS)).float()
         swings = torch.stack([(rooms.hinge == 0).float(), (rooms.hinge == 1).float()], -1)
         along = torch.stack([rooms.normal[..., 1], -rooms.normal[..., 0]], -1)
         place = torch.stack([(middle * rooms.normal).sum(-1), (middle * along).sum(-1), length], -1) / 3
-        tokens = self.floor_in(torch.cat([place, swings, kind], -1)) * rooms.mask[..., None]
-        reach = torch.linalg.vector_norm(torch.where(rooms.mask[..., None], middle, 0) + 1e-9, dim=-1).amax(1, keepdim=True)
+        tokens: Tensor = self.floor_in(torch.cat([place, swings, kind], -1)) * rooms.mask[..., None]
+        return tokens
+
+    def _room_code(self, rooms: RoomBatch, classes: Tensor, tokens: Tensor) -> Tensor:
+        middle = torch.where(rooms.mask[..., None], rooms.ends.mean(2), 0)
+        reach = torch.linalg.vector_norm(middle + 1e-9, dim=-1).amax(1, keepdim=True)
         area = polygon_area(rooms)
         pooled = tokens.sum(1) / rooms.mask.sum(1, keepdim=True).clamp_min(1)
-        ordinal = (classes[:, :, None] == classes[:, None]).tril().sum(-1)  # of each object among those of its class
-        counted = (classes < self.codec.classes) & (ordinal <= MOST_ALIKE)
-        inventory = (self.kind(classes) * counted[..., None]).sum(1) / 4
+        inventory = (self.kind(classes) * (classes < self.codec.classes)[..., None]).sum(1) / 4
         size = torch.cat([reach / 3, area.clamp_min(0.5).log()[:, None] - 2, rooms.height[:, None] - 2.7], -1)
-        room = by_room(self.room, torch.cat([pooled, inventory, size], -1)) + self.layout(rooms.layout)
-        parts = self.settings.passes * (2 * self.settings.layers + 1)
-        return FloorCode((layout or self._padded(rooms, classes)).split_keys(self.floor_keys(tokens), parts), room)
+        code: Tensor = by_room(self.room, torch.cat([pooled, inventory, size], -1)) + self.layout(rooms.layout)
+        return code
 
     def _padded(self, rooms: RoomBatch, classes: Tensor) -> PaddedRooms:
         return PaddedRooms(rooms, classes >= self.codec.classes, self.settings.heads)

@@ -64,6 +64,7 @@ class Trainer:
         start: SetTransformer | None = None,
     ) -> None:
         self.net = (start or initial(lambda: build_net(header), seed, "denoiser-init")).to(device)
+        self.net.unbound_rooms()
         self.average = copy.deepcopy(self.net).eval().requires_grad_(False)
         self.nets = nn.ModuleDict({"net": self.net, "average": self.average})  # what a checkpoint keeps
         self.optimiser = Optimiser(self.net, settings)
@@ -128,11 +129,12 @@ def follow(average: nn.Module, net: nn.Module, ema: float, done: int) -> None:
 
 
 def train(trainer: Trainer, data: Rooms, checkpoint: Checkpoint | None = None) -> Iterator[Step]:
-    """Train to the end, yielding each step; the state is kept every `checkpoint_every` steps and at the end."""
+    """Train to the end, yielding each step; the state is kept every `checkpoint_every` steps and at the end. The averaged net then knows its rooms' bounds."""
     while trainer.done < trainer.total:
         yield trainer.step(data)
         if checkpoint and (trainer.done % trainer.settings.checkpoint_every == 0 or trainer.done == trainer.total):
             checkpoint.keep(trainer.done, trainer.nets, trainer.optimiser)
+    trainer.average.bound_rooms(data.rooms, data.objects.classes)
 
 
 @torch.no_grad()

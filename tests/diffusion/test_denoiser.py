@@ -9,7 +9,7 @@ from pipeline.diffusion.checkpoint import load_weights
 from pipeline.diffusion.codec import CHANNELS, YAW, Codec
 from pipeline.diffusion.context import RoomContext, floor_tokens
 from pipeline.diffusion.poses import POSES, TURNED, UNTOLD
-from pipeline.diffusion.set_transformer import MOST_ALIKE, SetTransformer
+from pipeline.diffusion.set_transformer import SetTransformer
 from pipeline.diffusion.settings import ModelSettings
 from tests.diffusion.small_world import LAYOUTS
 
@@ -135,25 +135,40 @@ def test_what_is_expected_stays_within_what_data_can_be(net, noisy):
 
 
 @torch.no_grad()
-def test_a_rooms_code_counts_no_more_of_a_class_than_rooms_have(net, noisy):
-    rooms = noisy[0]
+def test_codes_of_other_rooms_stay_within_those_of_the_training_rooms(net, noisy):
+    rooms, classes = noisy[:2]
+    net.unbound_rooms()
+    own = net.floor_code(rooms, classes).room
+    many = torch.zeros(6, 24, dtype=classes.dtype)
+    free = net.floor_code(rooms, many).room
+    net.bound_rooms(rooms, classes)
+    assert torch.equal(net.floor_code(rooms, classes).room, own)
+    bounded = net.floor_code(rooms, many).room
+    net.unbound_rooms()
+    low, high = own.aminmax(dim=0)
+    assert not torch.equal(bounded, free)
+    assert torch.equal(bounded, free.clamp(low, high))
 
-    def code(count):
-        classes = torch.full((6, 12), net.codec.classes)
-        classes[:, :count] = 0
-        return net.floor_code(rooms, classes).room
 
-    assert not torch.allclose(code(MOST_ALIKE - 1), code(MOST_ALIKE))
-    torch.testing.assert_close(code(MOST_ALIKE), code(12))
+UNSEEN = {
+    "nine chairs": ("dining_room", (7, 4.5), ["dining_table", *["dining_chair"] * 9]),
+    "23 chairs": ("dining_room", (7, 4.5), ["dining_table", *["dining_chair"] * 23]),
+    "a bathroom of 30 m2": ("bathroom", (6, 5), ["toilet", "vanity", "shower"]),
+    "a bedroom of 120 m2": ("bedroom", (12, 10), ["double_bed", "nightstand", "wardrobe"]),
+    "a corridor of 30 m": ("hallway", (30, 1.2), ["shoe_cabinet"]),
+    "a kitchen of wall cabinets": ("kitchen", (3, 3), ["sink_cabinet", *["wall_cabinet"] * 9]),
+    "a bathroom of beds": ("bathroom", (4, 3), ["double_bed"] * 5),
+}
 
 
-@pytest.mark.parametrize("chairs", [4, 9, 16, 23])
+@pytest.mark.parametrize("room", UNSEEN)
 @torch.no_grad()
-def test_released_weights_draft_tables_with_more_chairs_than_they_have_seen(chairs):
+def test_released_weights_answer_rooms_unlike_any_that_they_were_trained_on(room):
     net, _, header = load_weights(RELEASED)
-    context = RoomContext("dining_room", np.array([[0, 0], [7, 0], [7, 4.5], [0, 4.5]]), ())
-    rooms = room_batch([floor_tokens(context)], [header.layouts.index("dining_room")], [2.7])
-    classes = torch.tensor([[header.norm.classes.index(name) for name in ("dining_table", *["dining_chair"] * chairs)]])
-    x = torch.randn(1, chairs + 1, CHANNELS, generator=torch.Generator().manual_seed(0))
+    layout, (w, d), categories = UNSEEN[room]
+    context = RoomContext(layout, np.array([[0, 0], [w, 0], [w, d], [0, d]], float), ())
+    rooms = room_batch([floor_tokens(context)], [header.layouts.index(layout)], [2.7])
+    classes = torch.tensor([[header.norm.classes.index(name) for name in categories]])
+    x = torch.randn(1, len(categories), CHANNELS, generator=torch.Generator().manual_seed(0))
     for level in (-4.0, -1.0, 1.0):
-        assert net.eval()(x, classes, torch.tensor([level]), rooms)[-1].abs().max() < 30.0
+        assert net(x, classes, torch.tensor([level]), rooms)[-1].abs().max() < 30.0

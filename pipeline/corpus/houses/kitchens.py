@@ -1,7 +1,5 @@
 """Kitchens: a run of base units along a wall, appliances in it, the fridge at its end, wall units above."""
 
-import itertools
-
 from pipeline.corpus.furniture.catalogue import Model
 from pipeline.corpus.houses.arranger import Arranger, free_front
 from pipeline.corpus.houses.room_occupancy import FILLER, ahead, on_side
@@ -27,11 +25,16 @@ def furnish_kitchen(arranger: Arranger) -> None:
     if arranger.wants("fridge_in_run") or arranger.space.area < SMALL:
         wanted = ["refrigerator", *wanted]
     left = run(arranger, wanted)
-    if any(c != "kitchen_cabinet" for c in left):
-        others = [c for c in left if c not in {"refrigerator", "kitchen_cabinet"}]
-        run(arranger, ["kitchen_cabinet", *itertools.chain.from_iterable((c, "kitchen_cabinet") for c in others)])
-    if not any(i.model.category == "refrigerator" for i in arranger.space.items):
+    others = sorted((c for c in left if c != "kitchen_cabinet"), key=lambda c: (c != "refrigerator", c not in NEEDED))
+    if others or not stands(arranger, "kitchen_cabinet"):
+        run(arranger, [*(unit for c in others for unit in (c, "kitchen_cabinet")), "kitchen_cabinet"])
+    if not stands(arranger, "refrigerator"):
         arranger.at_wall("refrigerator", corner=0.95)
+
+
+def stands(arranger: Arranger, category: str) -> bool:
+    """Say whether the kitchen has one of the category."""
+    return any(item.model.category == category for item in arranger.space.items)
 
 
 def run(arranger: Arranger, wanted: list[str]) -> list[str]:
@@ -50,10 +53,13 @@ def run(arranger: Arranger, wanted: list[str]) -> list[str]:
     near, far = (low_corner, high_corner) if forward else (high_corner, low_corner)
     at = FILLER if near else 0.005
     length -= FILLER if far else 0.0
+    needed = NEEDED.intersection(wanted)
+    if sum(arranger.stock.least(c)[0] + SEAM for c in needed) > length - at:
+        needed -= {"kitchen_cabinet"}
     left: list[str] = []
     placed: list[tuple[Model, float]] = []
     for number, category in enumerate(wanted):
-        later = NEEDED.intersection(wanted[number + 1 :]) - {category, *(m.category for m, _ in placed)}
+        later = needed.intersection(wanted[number + 1 :]) - {category, *(m.category for m, _ in placed)}
         spare = length - at - sum(arranger.stock.least(c)[0] + SEAM for c in later)
         model = arranger.pick(category, width=spare, depth=0.75)
         if model is None or (category == "kitchen_cabinet" and spare < 0.3):
@@ -78,7 +84,7 @@ def above(arranger: Arranger, side: int, placed: list[tuple[Model, float]]) -> N
         return
     hang(arranger, side, min(s - m.size[0] / 2 for m, s in base), max(s + m.size[0] / 2 for m, s in base))
     space = arranger.space
-    if not arranger.wants("microwave") or any(i.model.category == "microwave" for i in space.items):
+    if not arranger.wants("microwave") or stands(arranger, "microwave"):
         return
     for model, s in base:
         if model.category == "kitchen_cabinet":
