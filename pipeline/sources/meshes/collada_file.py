@@ -16,19 +16,8 @@ from numpy.typing import NDArray
 
 from pipeline.arrays import Floats, Ints
 from pipeline.sources.guarded import xml_root
-from pipeline.sources.meshes.obj_file import (
-    MAX_COORDINATE,
-    MAX_FACES,
-    MAX_GROUPS,
-    MAX_UVS,
-    MAX_VERTICES,
-    MeshMaterial,
-    ObjFile,
-    ObjGroup,
-    fans,
-    linear,
-    roughness_of,
-)
+from pipeline.sources.meshes.gathering import MeshGatherer
+from pipeline.sources.meshes.obj_file import MeshMaterial, ObjFile, ObjGroup, fans, linear, roughness_of
 from pipeline.sources.reasons import SourceError
 
 Elements = Mapping[str, Any]  # of a file, by id
@@ -72,11 +61,8 @@ class _Reader:
     def __init__(self, root: Any, where: str) -> None:
         self.root, self.where = root, where
         self.elements: Elements = {e.get("id"): e for e in root.iter() if e.get("id")}
-        self.vertices: list[Floats] = []
-        self.uvs: list[Floats] = []
-        self.groups: list[ObjGroup] = []
+        self.gathered = MeshGatherer(where)
         self.sources: dict[tuple[str, int], Floats] = {}
-        self.counts = [0, 0, 0]  # vertices, uvs, faces
         self.visits = 0  # of nodes and primitives: a few nodes that name each other twice are a tree without end
 
     def read(self) -> tuple[ObjFile, dict[str, MeshMaterial]]:
@@ -89,11 +75,10 @@ class _Reader:
         for element in shown:
             for node in element.findall("node"):
                 self._node(node, T, 0)
-        if not self.groups:
+        file = self.gathered.file()
+        if not file.groups:
             raise SourceError("not_obj", self.where, "has no triangles")
-        uvs = np.concatenate(self.uvs) if self.counts[1] else np.zeros((0, 2))
-        file = ObjFile(np.concatenate(self.vertices), uvs, tuple(self.groups), "")
-        return file, {name: material(name, self.elements) for name in sorted({g.material for g in self.groups} - {""})}
+        return file, {name: material(name, self.elements) for name in sorted({g.material for g in file.groups} - {""})}
 
     def _resolve(self, instance: Any) -> Any:
         return self.elements[instance.get("url").removeprefix("#")]
@@ -132,22 +117,9 @@ class _Reader:
         uvs = self._source(uv, 2) if uv is not None else np.zeros((0, 2))
         faces = corners[:, :, int(vertex.get("offset", 0))]
         uv_faces = corners[:, :, int(uv.get("offset", 0))] if uv is not None else np.full_like(faces, -1)
-        if len(faces) and (faces.min() < 0 or faces.max() >= len(points) or uv_faces.min() < -1 or uv_faces.max() >= len(uvs)):
-            raise SourceError("not_obj", self.where, "indexes vertices that are not there")
-        points = points @ T[:3, :3].T + T[:3, 3]
-        if not np.isfinite(points).all() or np.abs(points).max(initial=0) > MAX_COORDINATE:
-            raise SourceError("bad_number", self.where, "has coordinates that are not finite, or absurd")
-        if np.linalg.det(T[:3, :3]) < 0:
-            faces, uv_faces = faces[:, ::-1], uv_faces[:, ::-1]
-        start, start_uv = self.counts[0], self.counts[1]
-        self.counts = [start + len(points), start_uv + len(uvs), self.counts[2] + len(faces)]
-        if (np.array(self.counts) > (MAX_VERTICES, MAX_UVS, MAX_FACES)).any() or len(self.groups) >= MAX_GROUPS:
-            raise SourceError("too_large", self.where, "has {} vertices, {} uvs and {} faces".format(*self.counts))
-        self.vertices.append(points)
-        self.uvs.append(uvs)
         symbol = primitive.get("material", "")
-        uv_faces = uv_faces + start_uv if uv is not None else uv_faces
-        self.groups.append(ObjGroup(primitive.get("name", ""), bound.get(symbol, symbol), faces + start, uv_faces))
+        group = ObjGroup(primitive.get("name", ""), bound.get(symbol, symbol), faces, uv_faces)
+        self.gathered.add(T, points, uvs, group)
 
     def _source(self, given: Any, width: int) -> Floats:
         """Return the values (N, width) of a source, parsed once."""

@@ -1,8 +1,8 @@
 """glTF (.glb) and STL files as meshes, for URDFs whose meshes are of those kinds: trimesh reads them, what it makes is checked here.
 
-OBJ and COLLADA have readers of our own. trimesh joins the groups of an OBJ by material, puts vertices in an order of its own and passes over lines
-that are broken, where 3D-FUTURE and PartNet need group and material, the file's own order and a refusal; its COLLADA (by pycollada) leaves out strips
-and fans, which axis is up and the unit, and opens textures itself, wherever their paths lead.
+OBJ and COLLADA have readers of our own, for trimesh reads what is broken as something else and says nothing. Of an OBJ it takes negative indices from
+the end of the file and index 0 for the first vertex, passes over uvs that are not there, and knows no tabs or indents; a face of millions of corners takes 570 MiB. Of a COLLADA
+file (by pycollada) it ignores unit, axis that is up, `transparency` and references that lead nowhere, and takes seven times the time and memory.
 """
 
 import io
@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from pipeline.arrays import Floats
-from pipeline.sources.meshes.obj_file import MAX_COORDINATE, MAX_FACES, MAX_GROUPS, MAX_VERTICES, MeshMaterial, ObjFile, ObjGroup
+from pipeline.sources.meshes.gathering import MeshGatherer
+from pipeline.sources.meshes.obj_file import MeshMaterial, ObjFile, ObjGroup
 from pipeline.sources.meshes.visual_meshes import MAX_PIXELS
 from pipeline.sources.reasons import SourceError
 
@@ -41,37 +42,21 @@ def parse_scene(data: bytes, suffix: str, where: str) -> tuple[ObjFile, dict[str
 
 
 def _merge_meshes(shown: list[tuple[Floats, Any]], where: str) -> tuple[ObjFile, dict[str, MeshMaterial]]:
-    """Return meshes (T (4, 4), trimesh) as one file; a mirrored one has its faces turned."""
-    if len(shown) > MAX_GROUPS:
-        raise SourceError("too_large", where, f"shows {len(shown)} meshes")
-    vertices, uvs, groups = [np.zeros((0, 3))], [np.zeros((0, 2))], []
+    """Return meshes (T (4, 4), trimesh) as one file, and its materials by name."""
+    gathered = MeshGatherer(where)
     materials: dict[str, MeshMaterial] = {}
     names: dict[int, str] = {}
-    counts = np.zeros(3, np.int64)  # vertices, uvs, faces
     for T, mesh in shown:
         points, faces = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64)
         uv, material = getattr(mesh.visual, "uv", None), getattr(mesh.visual, "material", None)
         uv = np.zeros((0, 2)) if uv is None or len(uv) != len(points) else np.asarray(uv, np.float64)[:, :2]
-        start, start_uv = counts[:2].tolist()
-        counts += len(points), len(uv), len(faces)
-        if counts[0] > MAX_VERTICES or counts[2] > MAX_FACES:
-            raise SourceError("too_large", where, f"has {counts[0]} vertices and {counts[2]} faces")
-        with np.errstate(invalid="ignore", over="ignore"):  # looked at in the next line
-            points = points @ T[:3, :3].T + T[:3, 3]
-        if not np.isfinite(points).all() or np.abs(points).max(initial=0) > MAX_COORDINATE or not np.isfinite(uv).all():
-            raise SourceError("bad_number", where, "has coordinates that are not finite, or absurd")
-        if len(faces) and (faces.min() < 0 or faces.max() >= len(points)):
-            raise SourceError("not_obj", where, "indexes vertices that are not there")
-        faces = faces[:, ::-1] if np.linalg.det(T[:3, :3]) < 0 else faces
         name = names.setdefault(id(material), str(len(names))) if hasattr(material, "baseColorFactor") else ""
+        gathered.add(T, points, uv, ObjGroup("", name, faces, faces if len(uv) else np.full_like(faces, -1)))
         if name and name not in materials:
             materials[name] = _material(material)
-        vertices.append(points)
-        uvs.append(uv)
-        groups.append(ObjGroup("", name, faces + start, faces + start_uv if len(uv) else np.full_like(faces, -1)))
-    if not counts[2]:
+    if not gathered.counts[2]:
         raise SourceError("not_obj", where, "has no triangles")
-    return ObjFile(np.concatenate(vertices), np.concatenate(uvs), tuple(groups), ""), materials
+    return gathered.file(), materials
 
 
 def _material(material: Any) -> MeshMaterial:
