@@ -38,7 +38,8 @@ def plan_home(resources: Resources, request: Request, attempt: int) -> PlannedHo
         elif request.prompt:
             program, prompt = parse(request.prompt), request.prompt
         else:
-            program = floorplan.prior(seeds.generator(resources.seed, "program", request.index), resources.prior)
+            draw, family = (seeds.generator(resources.seed, step, request.index) for step in ("program", "family"))
+            program = floorplan.prior(draw, resources.prior, family)
             prompt = floorplan.describe(program)
         if request.plan:  # the user's own, which `check_sound` has seen
             plan = floorplan.plan_from_json(json.loads(request.plan))

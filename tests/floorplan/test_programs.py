@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from pipeline import params, taxonomy
+from pipeline import params, seeds, taxonomy
 from pipeline.errors import ContentError, RefusedError
 from pipeline.floorplan import complete, describe, json_schema, parse, prior, solve
 from pipeline.floorplan.program.consistency import check, reach
@@ -117,6 +117,48 @@ def test_weights_decide_what_the_prior_draws():
             PriorSettings(**wrong)
     tree = params.read(Path(__file__).resolve().parents[2] / "params.yaml")
     assert set(params.section(PriorSettings, tree, "prior").types) == set(plan_types())
+
+
+def homes_with_children(count):
+    """Return drawn homes, each without and with its children."""
+    draws = ((seeds.generator(7, "program", k), seeds.generator(7, "family", k)) for k in range(count))
+    return [(prior(seeds.generator(7, "program", k)), prior(draw, None, family)) for k, (draw, family) in enumerate(draws)]
+
+
+def test_a_third_to_a_half_of_family_homes_have_children():
+    counts = {"two": [], "more": []}
+    for _, home in homes_with_children(800):
+        beds = [r for r in home.rooms if r.type == "bedroom"]
+        children = [r for r in beds if r.role == "child"]
+        if len(beds) > 1:
+            counts["two" if len(beds) == 2 else "more"].append(len(children))
+        largest = max((r.area.target for r in beds), default=0.0)
+        assert all(r is not beds[0] and r.area.target < 0.95 * largest for r in children)
+    assert 0.28 < np.mean(np.array(counts["two"]) > 0) < 0.40
+    assert 0.45 < np.mean(np.array(counts["more"]) > 0) < 0.60
+    assert 0.15 < np.mean(np.array(counts["more"]) > 1) < 0.35
+    shared = PriorSettings(types={"shared": 1.0})
+    assert not any(r.role for r in prior(np.random.default_rng(0), shared, np.random.default_rng(0)).rooms)
+
+
+def test_children_change_nothing_but_whose_bedroom_it_is():
+    homes = homes_with_children(150)
+    for without, home in homes:
+        roles = tuple(r.model_copy(update={"role": ""}) if r.role == "child" else r for r in home.rooms)
+        assert home.model_copy(update={"rooms": roles}) == without
+        check(home)
+        assert complete(home) == home
+    assert homes_with_children(150) == homes
+    assert any(home != without for without, home in homes)
+
+
+def test_descriptions_name_children_and_are_understood_again():
+    for without, home in homes_with_children(60):
+        children = sum(r.role == "child" for r in home.rooms)
+        again = parse(describe(home))
+        assert sum(r.role == "child" for r in again.rooms) == children
+        assert again.unparsed == ()
+        assert children or describe(home) == describe(without)
 
 
 def test_descriptions_are_understood_again():

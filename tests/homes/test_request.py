@@ -7,7 +7,8 @@ import pytest
 
 from pipeline import taxonomy
 from pipeline.entities.plan import Plan, Room
-from pipeline.homes.request import layout_type
+from pipeline.homes.planning import plan_home
+from pipeline.homes.request import Request, layout_type
 
 
 def room(name, kind, area, functions=()):
@@ -45,3 +46,13 @@ def test_where_one_dines(rooms, expected):
 def test_a_bedroom_is_furnished_for_whom_it_is(role, kind):
     own = replace(room("a", "bedroom", 12), role=role)
     assert layout_type(own, Plan((own,), (), "a"), taxonomy.load()) == kind
+
+
+def test_homes_that_nobody_described_have_rooms_for_children(factory):
+    kinds = {}
+    for index in (10, 17, 35):
+        home = plan_home(factory, Request(index), 0)
+        kinds |= {(index, job.room_id): (job.room.role, job.layout_type) for job in home.jobs if job.room.type == "bedroom"}
+        assert home.program == plan_home(factory, Request(index), 0).program
+    assert {kind for role, kind in kinds.values() if role == "child"} == {"kids_room"}
+    assert {kind for role, kind in kinds.values() if role != "child"} == {"bedroom"}

@@ -38,7 +38,9 @@ def describe(program: FloorProgram) -> str:
             text += f"; {where}: " + _list([_phrase(name, count) for name, count in counts.items()])
     fronts = [{program.select(i)[0].type for i in k.ends} for k in program.links if k.kind == "open"]
     named = [f"the {_one(min(f))} open to the {_one(max(f))}" for f in fronts if "staircase" not in f]
-    return text + "".join(f"; {n}" for n in named[:1]) + "".join(f", {n}" for n in named[1:]) + "."
+    children = sum(r.role == "child" for r in program.rooms)
+    theirs = f"; {_number(children)} of the bedrooms for {'a child' if children == 1 else 'children'}" if children else ""
+    return text + theirs + "".join(f"; {n}" for n in named[:1]) + "".join(f", {n}" for n in named[1:]) + "."
 
 
 def _missing(counts: Counter[RoomType], beds: int) -> list[str]:

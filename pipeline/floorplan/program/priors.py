@@ -89,6 +89,17 @@ class ForbidStep(Step):
     forbid: tuple[Slug, Slug]
 
 
+class Children(Model):
+    """Bedrooms of children: the share of `homes` of two, three, ... bedrooms that have one (the last: of more, too), and the share of `further` bedrooms that are theirs, too.
+
+    None is the first bedroom of a home, and none has more than `size` of the largest one's floor.
+    """
+
+    homes: Annotated[tuple[float, ...], Field(min_length=1)]
+    further: float
+    size: float
+
+
 class PlanType(Model):
     """A type: its usual weight, its numbers of bedrooms, the room that one enters, and the outline: L-shaped with probability `corner`, a least aspect of `aspects`."""
 
@@ -98,6 +109,7 @@ class PlanType(Model):
     steps: tuple[RoomStep | LinkStep | BedroomsStep | TossStep | ForbidStep, ...]
     storeys: int = 1
     into: Place | None = None
+    children: Children | None = None
     corner: float = 0.15
     aspects: tuple[float, ...] = (1.0, 1.0, 1.3)
     span: float = 0.5
@@ -133,8 +145,8 @@ class PriorSettings:
                 raise ContentError(f"params.yaml: weights of prior.{name} must be 0 or more, and not all 0", "mend section prior")
 
 
-def prior(rng: np.random.Generator, settings: PriorSettings | None = None) -> FloorProgram:
-    """Draw a completed program."""
+def prior(rng: np.random.Generator, settings: PriorSettings | None = None, family: np.random.Generator | None = None) -> FloorProgram:
+    """Draw a completed program. `family` draws which bedrooms are children's; without it none is, and all else is the same."""
     settings = settings or PriorSettings()
     names = [n for n in plan_types() if settings.types.get(n, 0.0) > 0]
     weights = np.array([settings.types[n] for n in names])
@@ -144,7 +156,21 @@ def prior(rng: np.random.Generator, settings: PriorSettings | None = None) -> Fl
         counts = np.arange(kind.least, kind.most + 1)
         share = np.array(settings.bedrooms)[counts - 1] + 1e-12
         beds = int(rng.choice(counts, p=share / share.sum()))
-    return complete(draw(kind, beds, rng))
+    program = complete(draw(kind, beds, rng))
+    return _with_children(program, kind.children, family) if kind.children and family is not None else program
+
+
+def _with_children(program: FloorProgram, children: Children, rng: np.random.Generator) -> FloorProgram:
+    """Give some of the smaller bedrooms to children."""
+    beds = [r for r in program.rooms if r.type == "bedroom"]
+    largest = max((r.area.target or 0.0 for r in beds), default=0.0)
+    free = [r.id for r in beds[1:] if (r.area.target or 0.0) <= children.size * largest]
+    if not free or rng.random() >= children.homes[min(len(beds) - 2, len(children.homes) - 1)]:
+        return program
+    first = free[int(rng.integers(len(free)))]
+    theirs = {first, *(i for i in free if rng.random() < children.further)}
+    rooms = tuple(r.model_copy(update={"role": "child"}) if r.id in theirs else r for r in program.rooms)
+    return program.model_copy(update={"rooms": rooms})
 
 
 def draw(kind: PlanType, beds: int, rng: np.random.Generator) -> FloorProgram:
