@@ -5,14 +5,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pipeline.errors import RefusedError
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.room_links import Draft, join
 from pipeline.floorplan.language.rooms import HALLS, Fact, Named, Reading
 from pipeline.floorplan.language.tokens import Token
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
-from pipeline.floorplan.program.floor_program import MAX_ROOMS, Accessibility, FloorProgram, Shell, Style
+from pipeline.floorplan.program.floor_program import Accessibility, FloorProgram, Shell, Style
 
 ABOUT = 0.1  # "about 75 m2" allows this much either way
 SAME = 0.02  # two totals that differ by less are one, said twice
@@ -94,8 +93,6 @@ def _count(draft: Draft, state: Reading) -> None:
         return
     count, token = state.rooms
     draft.cite(token.first, token.last, "rooms")
-    if count > MAX_ROOMS:
-        raise RefusedError(f"{count} rooms are asked for", f"ask for {MAX_ROOMS} at most")
     lex = state.words.lexicon
     usual = "counts_living_rooms" in lex.traits  # there "three rooms" is how one says what is to live and to sleep in
     # elsewhere "six rooms: three bedrooms, ..." lists all, but "three rooms, kitchen, bath" does not

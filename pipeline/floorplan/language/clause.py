@@ -17,7 +17,7 @@ LISTING = {"comma", "and", "or"}
 LIKE = 0.15  # two rooms are alike where they differ by less
 BESIDE = {"near", "wall"}  # what such a relation joins lies on one storey
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
-HUGE, LARGE, MORE, LISTED = 5.0, 2.5, 1.6, 1.3  # times the usual area of the room in front: from there on an area is the home's
+HUGE, LARGE, PAIR, MORE, LISTED = 5.0, 2.5, 2.4, 1.6, 1.3  # times the usual area of the room in front: from there on an area is the home's
 
 
 def named_rooms(group: Group) -> Group:
@@ -366,7 +366,7 @@ def measures_home(c: Clause, k: int, token: Token, ids: Group, set_off: bool) ->
     home = any(x.kind == "home" and not x.amounts for x in c.sentence[:k])
     named = [x for x in rooms if x.first < token.first]
     if set_off:
-        return times > (LISTED if len(named) > 2 else MORE if home else LARGE if len(ids) > 1 else math.inf)
+        return times > (LISTED if len(named) > 2 else MORE if home else LARGE if len(ids) > 1 else PAIR if len(named) > 1 else math.inf)
     closes = len(named) == len(rooms) and (len(rooms) > 2 or home)
     return times > (LARGE if closes else HUGE if home else math.inf)
 

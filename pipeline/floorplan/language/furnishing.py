@@ -22,9 +22,8 @@ from pipeline.floorplan.program.furniture import CHAIRS, TABLES, lexicon
 STOPS = frozenset(".;!?\n。;!?")
 COMMAS = STOPS | {",", "、"}
 COMMA = frozenset(",，")  # within a sentence
-MOST, MOST_WORDS = 1e6, 6  # of any amount, and of a numeral
+MOST, MOST_WORDS, MOST_SEATS = 1e6, 6, 16  # of any amount, of a numeral, and at a table
 NEAR, FAR, WIDE, OWNED = 5, 7, 16, 14  # words in which "everywhere", a share, "free" and an owner are looked for
-MOST_SEATS = 16
 LEADS = ("with", "in", "is", "and", "article", "least", "most", "exactly", "between")  # behind these a dash before a number is no list's
 Kind = Literal["count", "pieces", "openable", "walkable", "style"]
 
@@ -276,35 +275,38 @@ class Scan:
         left = next((j for j in range(first - 1, max(begin, first - NEAR) - 1, -1) if self.text(j) in COMMAS), max(begin, first - NEAR) - 1)
         right = next((j for j in range(last, last + NEAR - 1) if self.text(j) in COMMAS), last + NEAR - 1)
         home = any(self.length(j, "home") and self.words[j].start not in self.rooms for j in range(left + 1, right))  # "cada habitación"
-        inside = range(first, last) if kind == "walkable" else ()
+        inside = range(first + self.length(first, "furnished"), last) if kind == "walkable" else ()
         home = home or any(self.length(j, "dwelling") and self.words[j].start in self.rooms for j in inside)
         span, inward = (self.words[first].start, self.words[last - 1].end), self.length(last, "in") > self.length(last, "none")
         self.claims.append(Claim(kind, *span, name, least, most, value, home, inward))
         return last - first
 
     def _share(self, k: int) -> int:
-        """Read "70 % free", "at least half of the living room's floor must stay free", "空地70%", "free: 70 %"."""
-        if free := self.length(k, "free"):
-            step, value, at = next(((*said, j) for j in self._part(k + free, FAR) if (said := self._fraction(j))[0]), (0, 0.0, k))
-            behind = [j + 1 for j in self._part(at + step, NEAR) if self.length(j, "floor", "home") or self.words[j].start in self.rooms]
+        """Read "70 % free", "at least half of the living room's floor must stay free", "空地70%", "free: 70 %", "furniture covers at most 30 %"."""
+        if lead := self.length(k, "free", "furnished"):
+            step, value, at = next(((*said, j) for j in self._part(k + lead, FAR) if (said := self._fraction(j))[0]), (0, 0.0, k))
+            if self.length(k, "furnished"):
+                step, value = 0 if any(self.length(j, "free") for j in self._part(k, 2 * FAR)) else step, 1.0 - value
+            near = self._part(at + step, NEAR)
+            behind = [j + n for j in near if (n := self.length(j, "floor", "home") or self.words[j].start in self.rooms)]
             return self._put("walkable", k, max((at + step, *behind)), value=value) if step else 0
-        start, at = k, k + self.length(k, "least", "exactly", "over")
+        start, at = k, k + ((most := self.length(k, "most")) or self.length(k, "least", "exactly", "over"))
         at += self.length(at, "article", "with") if at > k else 0
         step, value = self._fraction(at)
         ahead = range(at + step, min(at + step + 2 * WIDE, len(self.words)) if step else 0)
         part = list(itertools.takewhile(lambda j: self.text(j) not in STOPS, ahead))
-        last = next((j for j in part if self.length(j, "free")), 0)
+        last = next((j for j in part if self.length(j, "furnished" if most else "free")), 0)
         joins = (j for j in part if j < last and self.length(j, "and"))
         if other := next((j for j in joins if any(self._fraction(i)[0] for i in range(j + 1, last))), 0):
             return self._put("walkable", k, other, value=value)  # "70 % of the bath's floor and half of the hall's must be free"
         last = last if last in self._part(at + step, WIDE) else 0
         if not last or (last > at + step + NEAR and not any(self.length(j, "floor") for j in range(at + step, last))):
             return 0
-        while step := self.length(last, "free", "floor"):
+        while step := self.length(last, "free", "floor", "furnished"):
             last += step
-        while before := next((n for n in (4, 2, 1) if self.length(k - n, "floor", "of") == n), 0):  # "客厅地面至少60%"
+        while before := next((n for n in (4, 2, 1) if self.length(k - n, "floor", "of", "both") == n), 0):  # "客厅地面至少60%"
             k -= before
-        return self._put("walkable", k, last, value=value) - start + k
+        return self._put("walkable", k, last, value=1.0 - value if most else value) - start + k
 
     def _fraction(self, k: int) -> tuple[int, float]:
         """Return (length, value) of a share at word k: "60 %", "百分之六十", "two thirds"; (0, 0) for none."""

@@ -199,13 +199,7 @@ def _blank(scan: Scan, claims: Sequence[Claim]) -> list[bool]:
     inside = [(k, w) for c in claims if c.kind == "walkable" for k, w in enumerate(scan.words) if c.start <= w.start < c.end]
     at = [k for k, w in inside if w.start in scan.rooms and not scan.length(k - 1, "fraction")]  # "tres cuartos" are no rooms
     named = {scan.words[j].start for k in at for j in (k, k - 1, k - 2) if j == k or scan.length(j, "article") == 1}  # "each bedroom"
-    spans = iter(sorted((c.start, c.end) for c in claims))
-    start, end = next(spans)
-    gone = []
-    for w in scan.words:
-        while w.start >= end and (following := next(spans, None)) is not None:
-            start, end = following
-        gone.append(start <= w.start < end and w.start not in named)
+    gone = [w.start not in named and any(c.start <= w.start < c.end for c in claims) for w in scan.words]
     for c in (c for c in claims if c.home):  # "everywhere" belongs to the wish for the whole home that it stands by
         for j, w in enumerate(scan.words):
             if c.start - 40 < w.start < c.end + 40 and (step := scan.length(j, "home")):
@@ -323,11 +317,11 @@ class _Place:
         gap = self.prompt[claim.end : after[0].start] if after else " " * FARTHEST
         inward = claim.inward and len(gap) < FARTHEST and COMMA.isdisjoint(gap)
         if inside := [m for m in self.named if claim.start <= m.start and m.end <= claim.end]:
-            return inside[0].ids  # "at least half of the living room must stay free"
+            return self._and_in(inside, claim)  # "at least half of the living room must stay free"
         if claim.home or (claim.kind == "style" and not after and not before):
             return ()
         if inward or (len(gap) <= CLOSE and self.scan.length(self._at(claim.end), "of")):  # "带淋浴的卫生间"
-            return self._and_in(after)
+            return self._and_in(after, claim)
         if claim.kind == "style":  # a room's where it stands in the room's list of wishes or right before its name
             if before and self._joined(before[-1].end, claim.start) and self._led(before[-1], claim):
                 return before[-1].ids
@@ -356,26 +350,28 @@ class _Place:
         same = [m for m in before if m.ids == room.ids]
         placed = COMMA.isdisjoint(lead) and any(self.scan.fronted(self._at(m.start)) for m in same)  # "in the office put ..."
         if usual or placed or (joined and self._led(room, claim)):
-            return room.ids if claim.kind == "count" else self._and_in(before[: before.index(room) + 1][::-1])
+            return room.ids if claim.kind == "count" else self._and_in(before[: before.index(room) + 1][::-1], claim)
         mine = not joined and not barred
         return likely[0] if likely else room.ids if mine else ()  # "two bedrooms, a kitchen and a sofa": the home's
 
-    def _and_in(self, after: Sequence[Mention]) -> tuple[str, ...]:
-        """Return the rooms of the first mention and of those that go on from it: "in the bedroom and in the study"; in front of a wish they come last first."""
-        ids = after[0].ids
+    def _and_in(self, after: Sequence[Mention], claim: Claim) -> tuple[str, ...]:
+        """Return the rooms of the first mention and of those that go on from it: "in the bedroom and in the study", "bedroom and study both"; in front of a wish they come last first."""
+        ids, end = after[0].ids, self._at(claim.end)
+        both = claim.kind != "count" and any(self.scan.length(k, "both") for k in range(self._at(after[0].start), end))
         for pair in itertools.pairwise(after):
             k = self._at(min(m.end for m in pair))
             joined = self.scan.text(k) not in COMMAS and self.scan.length(k, "and")
-            if not joined or not self.scan.length(k + joined, "in"):
+            one = both and all(len(m.ids) == 1 for m in pair)
+            if pair[0].ids != pair[1].ids and not (joined and (one or self.scan.length(k + joined, "in"))):
                 break
             ids += tuple(i for i in pair[1].ids if i not in ids)
         return ids
 
     def _dwelling(self, room: Mention) -> bool:
         """Whether a room says how large a home is: "a two-bedroom flat", "un piso de dos dormitorios"."""
-        first = self._at(room.start)
+        first, behind = self._at(room.start), self._at(room.end)  # "客厅家具" is no home
         lead = next((k for k in range(first - 1, first - 4, -1) if self.scan.length(k, "dwelling", "with", "and")), first)
-        return bool(self.scan.length(lead, "dwelling") or self.scan.length(self._at(room.end), "dwelling"))
+        return bool(self.scan.length(lead, "dwelling")) or self.scan.length(behind, "dwelling") > self.scan.length(behind, "furnished")
 
     def _led(self, room: Mention, claim: Claim) -> bool:
         """Whether a word or a token between a room and a wish gives the one to the other: "with", "has", a colon."""

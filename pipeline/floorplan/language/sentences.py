@@ -361,9 +361,7 @@ def _give(c: Clause, k: int, e: Token, owners: Group) -> int:
 def _theirs(c: Clause, j: int, owners: Group, joined: str, *, bare: bool) -> bool:
     """Whether the room at j is the owners' own, and not one of the home's that a list goes on with; `bare`: the list began without an article."""
     x, own, number = c.sentence[j], "own" in c.sentence[j].det, c.sentence[j].number or 1
-    new = (
-        joined == "comma" and bare and not own and (x.number or "indefinite" in x.det)
-    )  # "un dormitorio con terraza, un baño y un despacho"
+    new = joined == "comma" and bare and not own and (x.number or "indefinite" in x.det)  # "with terrace, a bath and a study"
     known = x.definite and (len(owners) > 1 or len(c.stock.of(x.type)) > 1 or bool(x.ids))
     if new or x.role in {"shared", "guest"} or known or number > len(owners) or 1 < number < len(owners):
         return False

@@ -122,12 +122,9 @@ def segment(words: Words) -> list[Token]:
     i = 0
     while i < len(words.texts):
         token = _token(words, i)
-        if token.last > i:
-            i = token.last
-            if not (token.text == "." and tokens and tokens[-1].text == "."):  # "..." is one stop
-                tokens.append(token)
-        else:
-            i += 1
+        i = token.last
+        if not (token.text == "." and tokens and tokens[-1].text == "."):  # "..." is one stop
+            tokens.append(token)
     between = ([x.kind for x in tokens[max(k - 1, 0) : k + 2 : 2]] for k in range(len(tokens)))  # "kitchen-diner" is written as one
     tokens = [m for m, beside in zip(tokens, between, strict=True) if m.kind != "hyphen" or beside == ["room", "room"]]
     return _relabel(_numbers(tokens, words), words)
@@ -304,6 +301,7 @@ class _Amount:
         if _kind_at(self.tokens, i) != "num" or i - k > 4:
             return None
         low, high, side, unit, i = self._numbers(i)
+        unit = unit or self._taken_back(i - 1)
         if unit is None:
             return None
         i = self._limits(i, unit)
@@ -335,7 +333,9 @@ class _Amount:
     def _numbers(self, i: int) -> tuple[float, float | None, float | None, Token | None, int]:
         tokens, low, i = self.tokens, self.tokens[i].number, i + 1
         high = side = unit = None
-        i += _kind_at(tokens, i) in {"hyphen", "dash"} and _kind_at(tokens, i + 1) == "unit"
+        last = next((j for j in (i, i + 1, i + 2) if _kind_at(tokens, j) == "unit"), i)
+        between = {"hyphen", "dash"} | ({"word", "fill"} if tokens[last:] and tokens[last].value == "area" else set())  # "60ish m2"
+        i = last if all(_kind_at(tokens, j) in between for j in range(i, last)) else i
         if _kind_at(tokens, i) == "unit":
             unit, i = tokens[i], i + 1
         crossed = i < len(tokens) and (tokens[i].kind == "times" or tokens[i].text in self.lex.sign("crossing"))
@@ -348,6 +348,12 @@ class _Amount:
                 low, high = sorted((low, second))
                 unit, i = after, i + 3
         return low, high, side, unit, i
+
+    def _taken_back(self, k: int) -> Token | None:
+        """Return the unit of the area that the bare figure at k corrects: "160 m2 is too much, go with 145"."""
+        before, figure, behind = (_kind_at(self.tokens, k - 1), self.tokens[k], _kind_at(self.tokens, k + 1))
+        corrects = before == "fix" and figure.value == "figure" and figure.number >= SQUARES[1.0][1] and behind in {*ENDS, "comma"}
+        return next((t for t in reversed(self.tokens[: k * corrects]) if (t.kind, t.value) == ("unit", "area")), None)
 
     def _limits(self, i: int, unit: Token) -> int:
         tokens = self.tokens
