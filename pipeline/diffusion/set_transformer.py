@@ -50,6 +50,7 @@ OWN_WAYS = (
 )
 MOST = 8.0  # of a clean channel, in standard deviations
 UNBOUNDED = 1e6  # of a room's code, until training ends
+RARE = 0.001  # share of the training rooms at either end of a channel of their codes that is no measure for others
 FEW = 4  # products of fewer rows are summed in another order
 Geometry = slice(0, 8)
 SUBLAYERS = 3  # objects, floor, thought
@@ -186,14 +187,16 @@ class SetTransformer(nn.Module):
 
     @torch.no_grad()
     def bound_rooms(self, rooms: RoomBatch, classes: Tensor) -> None:
-        """Keep the codes of rooms from now on, channel by channel, within those of these rooms, on which it was trained.
+        """Keep the codes of rooms from now on, channel by channel, within those of these rooms, on which it was trained, but for a few at either end.
 
         Where a room unlike them wakes a channel that none of them does, what comes after has never been trained, and the answer runs away.
         """
         self.unbound_rooms()
         parts = torch.arange(len(rooms)).split(512)
         codes = [self._room_code(rooms.rows(rows), classes[rows], self._floor_tokens(rooms.rows(rows))) for rows in parts]
-        self.room_bounds.copy_(torch.stack(torch.cat(codes).aminmax(dim=0)))
+        ordered = torch.cat(codes).sort(dim=0).values
+        few = int(RARE * len(ordered))
+        self.room_bounds.copy_(torch.stack([ordered[few], ordered[-1 - few]]))
 
     def unbound_rooms(self) -> None:
         """Let the codes of rooms be what they are, as training needs it."""

@@ -77,7 +77,7 @@ class TrainSettings:
 class SampleSettings:
     """How rooms are sampled (section `sample` of params.yaml). Window limits are levels of T = 1000."""
 
-    evaluations: int = 12  # of the denoiser; 0: the paper's thousand levels, the reference
+    evaluations: int = 20  # of the denoiser; 0: the paper's thousand levels, the reference
     eta: float = 1.0  # noise of each step: 1 as in DDPM, 0 none (DDIM)
     batch: int = 32  # rooms that are sampled together
     quantity: bool = True  # draw exactly as many objects as are asked for
