@@ -197,6 +197,35 @@ def test_a_home_of_many_rooms_is_no_studio(named, added):
     assert ("studio_room" in made) == ("studio_room" in {*named, *added})
 
 
+@pytest.mark.parametrize(
+    ("floor", "bedrooms", "bathrooms"), [(38.0, 0, 1), (50.0, 1, 1), (75.0, 2, 1), (100.0, 3, 1), (125.0, 4, 2), (400.0, 5, 2)]
+)
+def test_a_home_of_which_only_the_floor_is_said_has_the_usual_bedrooms(floor, bedrooms, bathrooms):
+    made = complete(program(total_area=Range(target=floor, stated=True)))
+    counts = Counter(r.type for r in made.rooms)
+    assert counts["bedroom"] == bedrooms
+    assert counts["studio_room"] == (bedrooms == 0)
+    assert counts["bathroom"] == bathrooms
+    assert complete(made) == made
+
+
+@pytest.mark.parametrize(("said", "bedrooms"), [((), 3), (("living_room",), 3), (("bedroom",), 1), (("studio_room",), 0), (("office",), 0)])
+def test_rooms_that_are_said_decide_how_one_sleeps(said, bedrooms):
+    rooms = [room(f"r{k}", kind) for k, kind in enumerate(said)]
+    made = complete(program(*rooms, total_area=Range(target=95.0, stated=True)))
+    assert sum(r.type == "bedroom" for r in made.rooms) == bedrooms
+
+
+@pytest.mark.parametrize("prompt", ["a flat of 12 m x 8 m", "Wohnung, 12 m lang und 8 m breit", "a flat 8 m wide and 12 m long"])
+def test_sides_of_a_home_are_its_outline(prompt):
+    made = parse(prompt)
+    assert made.total_area.target == pytest.approx(96.0)
+    assert made.footprint.min_aspect <= 1.5 <= made.footprint.max_aspect
+    corners = np.concatenate([r.polygon for r in solve(made, 0).rooms])
+    width, depth = np.ptp(corners, axis=0)
+    assert max(width, depth) / min(width, depth) == pytest.approx(1.5, rel=0.08)
+
+
 def test_a_kitchen_with_a_dining_table_is_one_to_dine_in():
     wish = Furniture(counts=(Things(category="any_table", min=1), Things(category="any_chair", min=6)))
     made = complete(program(room("kitchen", "kitchen", furniture=wish), room("bed", "bedroom")))

@@ -7,13 +7,14 @@ from typing import Any
 
 from pipeline.floorplan.language.lexicon import kinds
 from pipeline.floorplan.language.room_links import Draft, join
-from pipeline.floorplan.language.rooms import HALLS, Fact, Named, Reading
+from pipeline.floorplan.language.rooms import HALLS, Fact, Inventory, Named, Reading
 from pipeline.floorplan.language.tokens import Token
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
 from pipeline.floorplan.program.floor_program import Accessibility, FloorProgram, Shell, Style
 
 ABOUT = 0.1  # "about 75 m2" allows this much either way
+MOST_ASPECT = 5.0  # of an outline
 SAME = 0.02  # two totals that differ by less are one, said twice
 MOST_STOREYS, MOST_PEOPLE, MOST_COUNTED = 3, 8, 9
 PANORAMA = 8.5  # outside wall of a living room with panoramic glazing [m]
@@ -25,6 +26,7 @@ SHELL = {"ceiling": ("ceiling",), "walls": ("inner_wall", "outer_wall"), "inner_
 MEASURED = {**SHELL, "doors": ("min_door",), "corridors": ("min_corridor",)}  # what has a length, and its fields of the program
 SMALL = kinds("small")
 BESIDES = kinds("besides")
+HOUSE = 2  # bedrooms of a house of which nothing is said
 STRANGERS = {"guest", "elder", "carer", "staff"}  # whose bedrooms are beside those of the people who live there
 LIVED = kinds("lived")
 GROUND = kinds("ground")
@@ -90,6 +92,8 @@ def _count(draft: Draft, state: Reading) -> None:
     if state.rooms is None:
         if state.people is not None and state.studio is None:
             _bedrooms(draft, state, state.people)
+        elif _is_house(state):
+            _sleepers(state.inventory, HOUSE)
         return
     count, token = state.rooms
     draft.cite(token.first, token.last, "rooms")
@@ -111,14 +115,25 @@ def _count(draft: Draft, state: Reading) -> None:
 
 def _bedrooms(draft: Draft, state: Reading, people: Token) -> None:
     """Add the bedrooms that so many people take, of which nobody stated how many there are: one for each who shares a flat, one for two where so many sleep, else one for two and one for each of the others."""
-    stock = state.inventory
-    if stock.of("studio_room") or any(r.role not in {"child", *STRANGERS} for r in stock.of("bedroom")):
-        return
     beside = {"children": 1, "sharers": 0, "sleepers": -int(people.number) // 2}.get(people.value, -1)
-    wanted = max(1, min(int(people.number) + beside, MOST_PEOPLE - 1))
+    if _sleepers(state.inventory, max(1, min(int(people.number) + beside, MOST_PEOPLE - 1))):
+        draft.cite(people.first, people.last, "rooms")
+
+
+def _is_house(state: Reading) -> bool:
+    """Whether the home is a house, which one room to live and sleep in is not, of which neither floor nor rooms are said to be all."""
+    house = state.words.lexicon.sign("house")
+    bounded = "closed" in state.flags or any(rooms is None and token.value == "area" for token, rooms in state.amounts)
+    return bool(state.homes) and all(e.text in house for e in state.homes) and not bounded
+
+
+def _sleepers(stock: Inventory, wanted: int) -> bool:
+    """Add bedrooms until there are so many, children's included, where no other is stated; return whether."""
+    if stock.of("studio_room") or any(r.role not in {"child", *STRANGERS} for r in stock.of("bedroom")):
+        return False
     for _ in range(wanted - sum(r.role == "child" for r in stock.of("bedroom"))):
         stock.add("bedroom", "", "", None).stated = False
-    draft.cite(people.first, people.last, "rooms")
+    return True
 
 
 def _living_rooms(draft: Draft, state: Reading, count: int, token: Token) -> None:
@@ -194,6 +209,8 @@ def _total(draft: Draft, token: Token) -> None:
         box |= {"min": box["target"] * (1 - ABOUT), "max": box["target"] * (1 + ABOUT)}
     old = draft.fields.get("total_area", {})
     draft.cite(token.first, token.last, "total_area")
+    if token.side is not None and (ratio := token.number / token.side**2) <= MOST_ASPECT:  # "8 m by 12 m"
+        draft.fields["footprint"] = {"min_aspect": ratio / (1 + SAME), "max_aspect": min(ratio * (1 + SAME), MOST_ASPECT), "stated": True}
     low = max((x for x in (old.get("min"), box.get("min")) if x is not None), default=None)
     high = min((x for x in (old.get("max"), box.get("max")) if x is not None), default=None)
     if low is not None and high is not None and low > high * (1 + SAME):
@@ -252,7 +269,7 @@ def _whole(draft: Draft, state: Reading) -> None:
         draft.forbid("room_type", "hallway", None, None, Fact("ban", (), (), 0.0, flags["no_hall"].first, flags["no_hall"].last))
     for flag, outline in OUTLINES.items():
         if stated(flag, "footprint"):
-            fields["footprint"] = {**fields.get("footprint", {}), **outline, "stated": True}
+            fields["footprint"] = {**outline, **fields.get("footprint", {}), "stated": True}
     access = fields.setdefault("accessibility", {})
     for flag in ("wheelchair", "step_free", "single"):
         access |= {"step_free": True} if stated(flag, "accessibility.step_free") else {}

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from pipeline.floorplan.language.phrases import backward, heads, listed_on_level
-from pipeline.floorplan.language.rooms import FRONT, HALLS, PRIVATE, Group, Reading, name
+from pipeline.floorplan.language.rooms import FRONT, HALLS, PRIVATE, Group, Reading, name, named_rooms
 from pipeline.floorplan.language.tokens import Token
 from pipeline.floorplan.program.defaults import DEFAULTS
 
@@ -18,11 +18,6 @@ LIKE = 0.15  # two rooms are alike where they differ by less
 BESIDE = {"near", "wall"}  # what such a relation joins lies on one storey
 NAMED = {"doors", "corridors", "ceiling", "walls", "inner_walls", "outer_walls"}  # what a length may measure besides rooms
 HUGE, LARGE, PAIR, MORE, LISTED = 5.0, 2.5, 2.4, 1.6, 1.3  # times the usual area of the room in front: from there on an area is the home's
-
-
-def named_rooms(group: Group) -> Group:
-    """Return the rooms of a group, without "all rooms" and zones."""
-    return tuple(i for i in group if not i.startswith("*"))
 
 
 def ids_of(phrases: Iterable[Token]) -> Group:
@@ -357,12 +352,14 @@ PLACES_AND_SIZES = {"level": level, "wing": wing, "zone": zone, "factor": factor
 
 def measures_home(c: Clause, k: int, token: Token, ids: Group, set_off: bool) -> bool:
     """Whether an area is the home's: more than the rooms in front would take, right behind them or `set_off` by a comma."""
-    rooms = [x for x in c.sentence if x.kind == "np"]
-    if token.total:
-        return True
-    if token.value != "area" or not ids or sum(bool(x.amounts) for x in rooms) != (not set_off):
+    if token.total or token.value != "area" or not ids:
+        return token.total
+    rooms, usual = [x for x in c.sentence if x.kind == "np"], [DEFAULTS[c.stock.get(i).type].area for i in ids]
+    if set_off and k > 1 and c.sentence[k - 2].kind == "home" and token.number > MORE * max(usual):
+        return True  # "a two-bedroom flat, 55 m2, with a kitchen of 5 m2"
+    if sum(bool(x.amounts) for x in rooms) != (not set_off):
         return False
-    times = token.number / sum(DEFAULTS[c.stock.get(i).type].area for i in ids)
+    times = token.number / sum(usual)
     home = any(x.kind == "home" and not x.amounts for x in c.sentence[:k])
     named = [x for x in rooms if x.first < token.first]
     if set_off:

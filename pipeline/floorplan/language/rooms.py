@@ -178,6 +178,11 @@ def _is_listed_again(sentence: list[Token], k: int) -> bool:
     return first is not None and bare and ends and here.type not in ALONE and sentence[k - 1].kind in {"comma", "join"}
 
 
+def named_rooms(group: Group) -> Group:
+    """Return the rooms of a group, without "all rooms" and zones."""
+    return tuple(i for i in group if not i.startswith("*"))
+
+
 def name(state: Reading, sentence: list[Token], k: int, level: int | None) -> Group:
     """Return the ids of the rooms that the phrase k names; make those that are missing."""
     e, stock = sentence[k], state.inventory

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Mapping
 
-from pipeline.floorplan.language.clause import LIGHT, LIKE, LISTING, PLACES_AND_SIZES, Clause, attach, ids_of, measures_home, named_rooms
+from pipeline.floorplan.language.clause import LIGHT, LIKE, LISTING, PLACES_AND_SIZES, Clause, attach, ids_of, measures_home
 from pipeline.floorplan.language.lexicon import kinds
-from pipeline.floorplan.language.rooms import HALLS, PERSONAL, PRIVATE, SOCIAL, Group, Named, Reading
+from pipeline.floorplan.language.rooms import HALLS, PERSONAL, PRIVATE, SOCIAL, Group, Named, Reading, named_rooms
 from pipeline.floorplan.language.tokens import Token
 
 DENIED = {"near": "ban", "wall": "ban", "away": "near", "open": "not_open", "avoid": "avoid"}  # what "not" makes of a relation

@@ -338,16 +338,23 @@ class _Amount:
         i = last if all(_kind_at(tokens, j) in between for j in range(i, last)) else i
         if _kind_at(tokens, i) == "unit":
             unit, i = tokens[i], i + 1
-        crossed = i < len(tokens) and (tokens[i].kind == "times" or tokens[i].text in self.lex.sign("crossing"))
-        if _kind_at(tokens, i + 1) == "num" and _kind_at(tokens, i + 2) == "unit" and tokens[i].kind != "comma":
-            second, after = tokens[i + 1].number, tokens[i + 2]
-            joins = tokens[i].kind == "dash" or tokens[i].text in self.lex.range_to
+        k = i + self._sided(i)  # "12 m long and 8 m wide"
+        both = k > i and _kind_at(tokens, k) in {"join", "comma"} and self._sided(k + 3)
+        crossed = k < len(tokens) and (tokens[k].kind == "times" or tokens[k].text in self.lex.sign("crossing") or both)
+        if _kind_at(tokens, k + 1) == "num" and _kind_at(tokens, k + 2) == "unit" and (both or tokens[k].kind != "comma"):
+            second, after = tokens[k + 1].number, tokens[k + 2]
+            first = low * (unit.number / after.number if unit else 1.0)  # "2 m by 60 cm"
+            joins = tokens[k].kind == "dash" or tokens[k].text in self.lex.range_to
             if (unit is None or after.value == unit.value) and crossed:
-                return low * second, None, min(low, second), after, i + 3
+                return first * second, None, min(first, second), after, k + 3 + self._sided(k + 3)
             if (unit is None or after.value == unit.value) and joins and (second > low or (self.ranged and low > 0)):
                 low, high = sorted((low, second))
-                unit, i = after, i + 3
+                unit, i = after, k + 3
         return low, high, side, unit, i
+
+    def _sided(self, k: int) -> bool:
+        """Whether the word at k says along which side a length is measured."""
+        return k < len(self.tokens) and (self.tokens[k].value == "wide" or self.tokens[k].text in self.lex.sign("sides"))
 
     def _taken_back(self, k: int) -> Token | None:
         """Return the unit of the area that the bare figure at k corrects: "160 m2 is too much, go with 145"."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pipeline.floorplan.program.areas import with_areas
 from pipeline.floorplan.program.consistency import check_names, check_storeys, reach
 from pipeline.floorplan.program.defaults import INTO
-from pipeline.floorplan.program.floor_program import OTHERS, Entrance, FloorProgram, RoomReq, RoomType, Shell
+from pipeline.floorplan.program.floor_program import OTHERS, Entrance, FloorProgram, Range, RoomReq, RoomType, Shell
 from pipeline.floorplan.program.furniture import allot_pieces, matching_categories, spread
 from pipeline.floorplan.program.links import connect, distances, is_forbidden, nearness, resolve
 
@@ -15,6 +15,9 @@ BESIDE = {"bathroom", "wc", "closet", "balcony", "storage", "utility", "hallway"
 FEW = 6  # rooms, below which an irregular outline has one corner cut out and not two
 # rooms of homes in which nobody sleeps where they live
 BEYOND_ONE_ROOM = {"dining_room", "hallway", "garage", "playroom", "library", "media_room", "gym", "staircase", "workshop"}
+# homes of which nobody says how many bedrooms they have: less floor is one room, the most bedrooms, floor without them and for each [m2]
+ONE_ROOM, MOST_BEDROOMS, BESIDE_BEDROOMS, A_BEDROOM = 42.0, 5, 20.0, 27.0
+FEW_BEDS = 3  # bedrooms, up to which one bathroom is enough
 TABLED = {"kitchen", "living_room", "family_room"}  # in which one may dine
 HUBLESS = {"living_room", "family_room", "studio_room", "hallway", "entry"}
 
@@ -88,17 +91,19 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
     never = _forbidden_types(program)
     work = bool(types & {"office", "meeting_room"}) and not types & {"bedroom", "living_room", "studio_room", "family_room"}
 
-    def add(kind: str, name: str) -> None:
-        if kind not in types and kind not in never:
+    def add(kind: str, name: str, count: int = 1) -> None:
+        for _ in range(count if kind not in types | never else 0):
             rooms.append(RoomReq.model_validate({"id": _name(name, rooms), "type": kind, "stated": False}))
             types.add(kind)
 
     if not program.only and not work:
         roles = {r.role for r in rooms if r.type == "bedroom"}
         of_others = len(roles) == 1 and roles < OTHERS
-        if of_others and "studio_room" not in types:
+        if of_others:
             types.discard("bedroom")
-            add("bedroom", "bed")
+        beds = usual_bedrooms(program.total_area) if program.total_area.stated and "bedroom" not in types else 0
+        if "studio_room" not in types:
+            add("bedroom", "bed", max(beds - 1, 1) if of_others else beds)
         if not types & {"living_room", "family_room", "studio_room"} and "living" not in functions:
             if "bedroom" not in types and (types & BEYOND_ONE_ROOM or len(program.select("bathroom")) > 1):
                 add("bedroom", "bed")
@@ -112,12 +117,18 @@ def _add_missing(program: FloorProgram) -> tuple[RoomReq, ...]:
         if "kitchen" not in types and "cooking" not in functions:
             add("kitchen", "kitchen")
         if "bathroom" not in types:
-            add("bathroom", "bath")
+            add("bathroom", "bath", 1 + (beds > FEW_BEDS))
         elif left := _without_bath(program):
             levels = {r.level for r in left}
             level = levels.pop() if len(levels) == 1 else None
             rooms.append(RoomReq(id=_name("bath", rooms), type="bathroom", level=level, stated=False))
     return tuple(rooms)
+
+
+def usual_bedrooms(floor: Range) -> int:
+    """Return how many bedrooms a home of so much floor usually has; 0: one lives and sleeps in one room."""
+    area = floor.target or floor.max or floor.min or 0.0
+    return 0 if area < ONE_ROOM else min(MOST_BEDROOMS, round((area - BESIDE_BEDROOMS) / A_BEDROOM))
 
 
 def _without_bath(program: FloorProgram) -> list[RoomReq]:
