@@ -59,8 +59,9 @@ def is_furnished(kind: str) -> bool:
 
 
 def natural(selector: str) -> tuple[str, ...]:
-    """Return the room types in which a category usually stands, the likeliest first."""
-    return tuple(dict.fromkeys(kind for name in members(selector) for kind in cards()[name].usual))
+    """Return the room types in which what one calls so usually stands, the likeliest first."""
+    meant = [kind for kinds in lexicon()["meant"].get(selector, {}) for kind in kinds.split() if kind != "*"]
+    return tuple(dict.fromkeys([*(kind for name in members(selector) for kind in cards()[name].usual), *meant]))
 
 
 def impossible(kind: str, category: str) -> bool:
