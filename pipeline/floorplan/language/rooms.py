@@ -280,10 +280,9 @@ def _by_role(state: Reading, sentence: list[Token], k: int, level: int | None) -
     free = [r for r in plain if r.open_slot and (r.level in {None, level} or (e.definite and level is None))]  # those of this storey
     slots = [r for r in free if r.whole or r.id not in others or _is_spelt_out(sentence, k, r)]
     if slots:
-        others = [x for x in sentence[k + 1 :] if x.kind == "np" and x.type == e.type and x.role not in {"", role}]
-        theirs = sum(int(x.number or 1) for x in others) or int(
-            role == "child" and len(slots) == len(same) > 2
-        )  # parents sleep in one of "four bedrooms"
+        following = [x for x in sentence[k + 1 :] if x.kind == "np" and x.type == e.type and x.role not in {"", role}]
+        parents = int(role == "child" and len(slots) == len(same) > 2)  # they sleep in one of "four bedrooms"
+        theirs = sum(int(x.number or 1) for x in following) or parents
         left = max(len(slots) - theirs, 1)  # "a 3-bedroom house, the kids' rooms ... and the parents' room"
         return [close(r, role, e.text) for r in slots[: int(e.number or left) if many else 1]]
     return [close(plain[0], role, e.text)] if len(plain) == 1 == len(same) and e.definite and not plain[0].extra else []
