@@ -129,12 +129,14 @@ def follow(average: nn.Module, net: nn.Module, ema: float, done: int) -> None:
 
 
 def train(trainer: Trainer, data: Rooms, checkpoint: Checkpoint | None = None) -> Iterator[Step]:
-    """Train to the end, yielding each step; the state is kept every `checkpoint_every` steps and at the end. The averaged net then knows its rooms' bounds."""
+    """Train to the end, yielding each step; the state is kept every `checkpoint_every` steps and at the end. With the last step the averaged net bounds its codes by the rooms."""
     while trainer.done < trainer.total:
-        yield trainer.step(data)
+        step = trainer.step(data)
+        if trainer.done == trainer.total:
+            trainer.average.bound_rooms(data.rooms, data.objects.classes)
+        yield step
         if checkpoint and (trainer.done % trainer.settings.checkpoint_every == 0 or trainer.done == trainer.total):
             checkpoint.keep(trainer.done, trainer.nets, trainer.optimiser)
-    trainer.average.bound_rooms(data.rooms, data.objects.classes)
 
 
 @torch.no_grad()

@@ -8,7 +8,7 @@ from pathlib import Path
 # The instructions that every x86-64 machine of the last ten years has: with wider ones sums, exponentials and angles come out in other last bits.
 PINNED = {
     "ATEN_CPU_CAPABILITY": "avx2",
-    "MKL_CBWR": "AVX2",
+    "MKL_CBWR": "AVX2,STRICT",  # strict: a row of a product does not depend on how many there are
     "NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR",
     "ONEDNN_MAX_CPU_ISA": "AVX2",
     "OPENBLAS_CORETYPE": "Haswell",
