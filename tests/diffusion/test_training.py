@@ -14,6 +14,7 @@ from pipeline.diffusion.codec import Codec
 from pipeline.diffusion.job import rooms_of
 from pipeline.diffusion.loss import constraint_descent, denoising_loss, draw
 from pipeline.diffusion.rooms import layout_weights
+from pipeline.diffusion.set_transformer import UNBOUNDED
 from pipeline.diffusion.settings import ModelSettings, TrainSettings
 from pipeline.diffusion.training import Trainer, train, validation
 from pipeline.errors import ContentError
@@ -49,6 +50,15 @@ def trained(header, data, steps):
 
 def same(a, b):
     return all(torch.equal(x, y) for x, y in zip(a.state_dict().values(), b.state_dict().values(), strict=True))
+
+
+def test_with_the_last_step_the_averaged_net_knows_the_bounds_of_its_rooms(header, data):
+    whole, half = trained(header, data, 6), trained(header, data, 3)
+    codes = whole.average.floor_code(data.rooms, data.objects.classes).room
+    assert torch.equal(codes.aminmax(dim=0)[0], whole.average.room_bounds[0])
+    assert torch.equal(codes.aminmax(dim=0)[1], whole.average.room_bounds[1])
+    for net in (whole.net, half.net, half.average):
+        assert net.room_bounds.abs().min() >= UNBOUNDED
 
 
 def test_a_resumed_run_equals_an_undisturbed_one_bit_for_bit(header, data, tmp_path):
