@@ -114,7 +114,8 @@ def trials(stages: list[Path], runs: dict[str, str], folder: Path) -> dict[str, 
             out = folder / f"{stage.stem}.{engine}.json"
             with (folder / f"{stage.stem}.{engine}.log").open("w") as log:
                 call = [python, str(HERE / f"{engine}.py"), str(stage), str(plan_file), str(out)]
-                done = subprocess.run(call, stdout=log, stderr=log, check=False, env={**os.environ, "OMP_NUM_THREADS": "1"})
+                own = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONPATH": str(ROOT)}  # engines' Pythons do not know this project
+                done = subprocess.run(call, stdout=log, stderr=log, check=False, env=own)
             if done.returncode:
                 print(f"{engine} failed on {stage.name}: see {log.name}", flush=True)
                 continue
