@@ -168,7 +168,8 @@ class SetTransformer(nn.Module):
         self.layout = nn.Embedding(layouts, width)
         self.room = nn.Sequential(nn.Linear(2 * width + 3, width), nn.SiLU(), nn.Linear(width, width))
         self.room_bounds: Tensor
-        self.register_buffer("room_bounds", torch.tensor([[-UNBOUNDED], [UNBOUNDED]]).repeat(1, width))
+        self.register_buffer("room_bounds", torch.empty(2, width))
+        self.unbound_rooms()
         self.level = nn.Sequential(nn.Linear(33, width), nn.SiLU(), nn.Linear(width, width))
         self.floor_keys = nn.Linear(width, settings.passes * (2 * settings.layers + 1) * width)
         self.passes = nn.ModuleList(Pass(settings) for _ in range(settings.passes))
@@ -191,7 +192,6 @@ class SetTransformer(nn.Module):
 
         Where a room unlike them wakes a channel that none of them does, what comes after has never been trained, and the answer runs away.
         """
-        self.unbound_rooms()
         parts = torch.arange(len(rooms)).split(512)
         codes = [self._room_code(rooms.rows(rows), classes[rows], self._floor_tokens(rooms.rows(rows))) for rows in parts]
         ordered = torch.cat(codes).sort(dim=0).values

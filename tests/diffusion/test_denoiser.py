@@ -151,11 +151,14 @@ def test_codes_of_other_rooms_stay_within_those_of_the_training_rooms(net, noisy
 
 
 UNSEEN = {
+    "four chairs": ("dining_room", (7, 4.5), ["dining_table", *["dining_chair"] * 4]),
     "nine chairs": ("dining_room", (7, 4.5), ["dining_table", *["dining_chair"] * 9]),
+    "16 chairs": ("dining_room", (7, 4.5), ["dining_table", *["dining_chair"] * 16]),
     "23 chairs": ("dining_room", (7, 4.5), ["dining_table", *["dining_chair"] * 23]),
     "a bathroom of 30 m2": ("bathroom", (6, 5), ["toilet", "vanity", "shower"]),
     "a bedroom of 120 m2": ("bedroom", (12, 10), ["double_bed", "nightstand", "wardrobe"]),
     "a corridor of 30 m": ("hallway", (30, 1.2), ["shoe_cabinet"]),
+    "a kitchen without base cabinets": ("kitchen", (2.5, 1.9), ["refrigerator", "oven", "sink_cabinet", "ceiling_lamp"]),
     "a kitchen of wall cabinets": ("kitchen", (3, 3), ["sink_cabinet", *["wall_cabinet"] * 9]),
     "a bathroom of beds": ("bathroom", (4, 3), ["double_bed"] * 5),
 }

@@ -226,6 +226,18 @@ def test_sides_of_a_home_are_its_outline(prompt):
     assert max(width, depth) / min(width, depth) == pytest.approx(1.5, rel=0.08)
 
 
+@pytest.mark.parametrize("prompt", ["a flat of 8 m x 8 m with one bedroom", "a flat 8.1 m by 8 m", "a house 20 m x 4 m"])
+def test_sides_may_be_alike_or_as_unlike_as_an_outline_can_be(prompt):
+    outline = parse(prompt).footprint
+    assert 1.0 <= outline.min_aspect < outline.max_aspect <= 5.0
+    assert outline.stated
+
+
+def test_a_home_that_is_too_narrow_is_refused():
+    with pytest.raises(RefusedError, match="as long as wide"):
+        parse("a house 20 m x 3 m")
+
+
 def test_a_kitchen_with_a_dining_table_is_one_to_dine_in():
     wish = Furniture(counts=(Things(category="any_table", min=1), Things(category="any_chair", min=6)))
     made = complete(program(room("kitchen", "kitchen", furniture=wish), room("bed", "bedroom")))

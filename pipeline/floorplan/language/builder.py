@@ -11,10 +11,9 @@ from pipeline.floorplan.language.rooms import HALLS, Fact, Inventory, Named, Rea
 from pipeline.floorplan.language.tokens import Token
 from pipeline.floorplan.program.consistency import ImpossibleError
 from pipeline.floorplan.program.defaults import DEFAULTS
-from pipeline.floorplan.program.floor_program import Accessibility, FloorProgram, Shell, Style
+from pipeline.floorplan.program.floor_program import MOST_ASPECT, Accessibility, FloorProgram, Shell, Style
 
 ABOUT = 0.1  # "about 75 m2" allows this much either way
-MOST_ASPECT = 5.0  # of an outline
 SAME = 0.02  # two totals that differ by less are one, said twice
 MOST_STOREYS, MOST_PEOPLE, MOST_COUNTED = 3, 8, 9
 PANORAMA = 8.5  # outside wall of a living room with panoramic glazing [m]
@@ -209,13 +208,22 @@ def _total(draft: Draft, token: Token) -> None:
         box |= {"min": box["target"] * (1 - ABOUT), "max": box["target"] * (1 + ABOUT)}
     old = draft.fields.get("total_area", {})
     draft.cite(token.first, token.last, "total_area")
-    if token.side is not None and (ratio := token.number / token.side**2) <= MOST_ASPECT:  # "8 m by 12 m"
-        draft.fields["footprint"] = {"min_aspect": ratio / (1 + SAME), "max_aspect": min(ratio * (1 + SAME), MOST_ASPECT), "stated": True}
+    if token.side is not None:  # "8 m by 12 m"
+        _sides(draft, token, token.number / token.side**2)
     low = max((x for x in (old.get("min"), box.get("min")) if x is not None), default=None)
     high = min((x for x in (old.get("max"), box.get("max")) if x is not None), default=None)
     if low is not None and high is not None and low > high * (1 + SAME):
         raise ImpossibleError("two total areas are asked for", "keep one of the two", draft.citations("total_area"))
     draft.fields["total_area"] = {**(old or box), "min": low, "max": high, "stated": True}
+
+
+def _sides(draft: Draft, token: Token, aspect: float) -> None:
+    """Give the home the outline of its sides. Refuses one that is too narrow."""
+    if aspect > MOST_ASPECT:
+        advice = f"ask for a longer side of at most {MOST_ASPECT:g} times the shorter"
+        draft.refuse(f"a home {aspect:.1f} times as long as wide", advice, [(token.first, token.last)], "footprint")
+    around = {"min_aspect": max(aspect / (1 + SAME), 1.0), "max_aspect": min(aspect * (1 + SAME), MOST_ASPECT)}
+    draft.fields["footprint"] = {**around, "stated": True}
 
 
 def _length(draft: Draft, token: Token, rooms: Sequence[Named]) -> None:
@@ -267,9 +275,10 @@ def _whole(draft: Draft, state: Reading) -> None:
     fields |= {"scale": LUXURY} if stated("luxury", "scale") else {}
     if "no_hall" in flags:
         draft.forbid("room_type", "hallway", None, None, Fact("ban", (), (), 0.0, flags["no_hall"].first, flags["no_hall"].last))
+    sides = fields.get("footprint", {})
     for flag, outline in OUTLINES.items():
         if stated(flag, "footprint"):
-            fields["footprint"] = {**outline, **fields.get("footprint", {}), "stated": True}
+            fields["footprint"] = {**fields.get("footprint", {}), **outline, **sides, "stated": True}
     access = fields.setdefault("accessibility", {})
     for flag in ("wheelchair", "step_free", "single"):
         access |= {"step_free": True} if stated(flag, "accessibility.step_free") else {}

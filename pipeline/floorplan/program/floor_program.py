@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline import style, taxonomy
 
+MOST_ASPECT = 5.0  # of an outline
 MAX_ROOMS = 40
 MAX_PIECES = 200
 
@@ -164,8 +165,8 @@ class Footprint(Model):
 
     shape: Literal["rectangle", "L", "T", "any"] = "rectangle"
     corners: Literal["plain", "chamfered"] = "plain"
-    min_aspect: Annotated[float, Field(ge=1.0, le=5.0)] = 1.0
-    max_aspect: Annotated[float, Field(ge=1.0, le=5.0)] = 1.6
+    min_aspect: Annotated[float, Field(ge=1.0, le=MOST_ASPECT)] = 1.0
+    max_aspect: Annotated[float, Field(ge=1.0, le=MOST_ASPECT)] = 1.6
     stated: bool = False
 
 
