@@ -5,7 +5,7 @@ import logging
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan.language import parse
 from pipeline.floorplan.language.llm import Server, UnansweredError, ask, server_from_env
-from pipeline.floorplan.language.parser import check_length
+from pipeline.floorplan.language.text import check_length
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from pipeline.errors import RefusedError
 from pipeline.floorplan.language.builder import Mention, room_mentions
 from pipeline.floorplan.language.lexicon import LANGUAGES, lexicon
-from pipeline.floorplan.language.parser import attach, check_length, read_furniture, understand_rooms
+from pipeline.floorplan.language.parser import attach, read_furniture, understand_rooms
 from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.text import fold, split_words
+from pipeline.floorplan.language.text import check_length, fold, split_words
 from pipeline.floorplan.program.consistency import ImpossibleError, check_furniture
 from pipeline.floorplan.program.floor_program import Evidence, FloorProgram, RoomReq, Span
 from pipeline.floorplan.program.furniture import allot_pieces, spread

@@ -5,14 +5,13 @@ room a wish means is settled afterwards (`attach`), when the rooms and their pla
 """
 
 import bisect
-import functools
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from pipeline.errors import RefusedError
-from pipeline.floorplan.language.lexicon import STRONG
+from pipeline.floorplan.language.lexicon import STRONG, furniture_phrases, furniture_stems, name_stems, stem
 from pipeline.floorplan.language.lexicon import lexicon as spoken
 from pipeline.floorplan.language.spelling import detect
 from pipeline.floorplan.language.text import fold, has_minus, split_words, words
@@ -47,47 +46,6 @@ class Claim:
     plural: bool = False  # "armchairs": nobody counted them
 
 
-@functools.lru_cache(maxsize=8192)
-def stem(word: str) -> str:
-    """Return a word without the endings that any of the languages may put to it."""
-    endings = lexicon()["endings"]
-    for _ in range(2 if word.isalpha() else 0):
-        word = word.removesuffix(next((e for e in endings if word.endswith(e) and len(word) - len(e) >= 3), ""))
-    return word
-
-
-def stemmed(form: str) -> tuple[str, ...]:
-    """Return the stems of the words of a form; what stands before it tells that it needs an owner."""
-    return tuple(map(stem, words(form.removeprefix("@"))))
-
-
-@functools.cache
-def _phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool, tuple[str, ...]], ...]]:
-    """Return by first stem: (stems, kind, name, whether an owner is needed, words), the longest first."""
-    data = lexicon()
-    listed = [("name", name, form) for name, forms in data["names"].items() for some in forms.values() for form in some]
-    listed += [("small", form, form) for form in data["small"]]
-    listed += [("look", name, form) for name, some in data["styles"].items() for form in some]
-    listed += [(kind, str(form), str(form)) for kind, some in data["words"].items() for form in some if form != "-"]
-    listed += [(kind, str(name), form) for kind in ("owner", "fraction") for name, some in data[f"{kind}s"].items() for form in some]
-    table: dict[str, list[tuple[tuple[str, ...], str, str, bool, tuple[str, ...]]]] = {}
-    for kind, name, form in listed:
-        stems = stemmed(form)
-        table.setdefault(stems[0], []).append((stems, kind, name, form.startswith("@"), words(form.removeprefix("@"))))
-    return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
-
-
-@functools.cache
-def _stems() -> frozenset[str]:
-    return frozenset(s for entries in _phrases().values() for entry in entries for s in entry[0])
-
-
-@functools.cache
-def _name_stems(name: str, language: str) -> frozenset[str]:
-    """Return the first stems of what a language calls a thing."""
-    return frozenset(stemmed(form)[0] for form in lexicon()["names"].get(name, {}).get(language, ()))
-
-
 @dataclass(frozen=True, slots=True)
 class _Word:
     """A word as it is read, without the ends of plurals, cases and genders, and its place in the prompt."""
@@ -112,7 +70,9 @@ class Scan:
         self.traits = read.lexicon.traits if read is not None else frozenset[str]()
         written, tokens = (read.written, segment(read)) if read is not None else (list(split_words(prompt)), [])
         folded = [fold(w.text) for w in written]
-        texts = [w if stem(w) in _stems() else text for w, text in zip(folded, read.texts if read is not None else folded, strict=True)]
+        texts = [
+            w if stem(w) in furniture_stems() else text for w, text in zip(folded, read.texts if read is not None else folded, strict=True)
+        ]
         self.words = [_Word(text, stem(text), t.start, t.end) for t, text in zip(written, texts, strict=True) if text != "-"]
         # names of rooms: whether a word is the first of one
         self.rooms = {written[k].start: k == m.first for m in tokens if m.kind in STRONG for k in range(m.first, m.last)}
@@ -127,7 +87,7 @@ class Scan:
         found = (
             [
                 (len(p), kind, name, owned, spelt[k : k + len(p)] != form)
-                for p, kind, name, owned, form in _phrases().get(stem, ())
+                for p, kind, name, owned, form in furniture_phrases().get(stem, ())
                 if tuple(stems[k : k + len(p)]) == p
                 and (len(p) > 1 or self.words[k].text not in storeys)
                 and not (kind == "name" and len(p) == 1 and self._other(k, name))
@@ -141,7 +101,7 @@ class Scan:
     def _other(self, k: int, name: str) -> bool:
         """Whether word k names a room, or is another word of the prompt's language: "Büro" is no "buró", "never" no "nevera"."""
         word = self.words[k]
-        if not self.language or word.stem in _name_stems(name, self.language):
+        if not self.language or word.stem in name_stems(name, self.language):
             return "characters" not in self.traits and self.rooms.get(word.start) is False  # "a walk-in wardrobe"
         return word.start in self.rooms or word.text in spoken(self.language).vocabulary
 
@@ -277,7 +237,8 @@ class Scan:
         home = any(self.length(j, "home") and self.words[j].start not in self.rooms for j in range(left + 1, right))  # "cada habitación"
         inside = range(first + self.length(first, "furnished"), last) if kind == "walkable" else ()
         home = home or any(self.length(j, "dwelling") and self.words[j].start in self.rooms for j in inside)
-        span, inward = (self.words[first].start, self.words[last - 1].end), self.length(last, "in") > self.length(last, "none")
+        span, place = (self.words[first].start, self.words[last - 1].end), last + self.length(last, "is")  # "should be in the bathroom"
+        inward = self.length(place, "in") > self.length(place, "none")
         self.claims.append(Claim(kind, *span, name, least, most, value, home, inward))
         return last - first
 
@@ -346,16 +307,25 @@ class Scan:
             least = 2 if last.endswith(lexicon()["plural"]) and last[0].isascii() and not shown else 1
         self.negated = most == 0
         self._style(at, name_at - at)
-        size = self._put("count", k, name_at + length, name, least, most)
+        last, barred = name_at + length, self._barred(name_at + length)
+        size = self._put("count", k, last + barred, name, *((0, 0) if barred else (least, most)))
         claim, place = self.claims[-1], len(self.claims) - 1
         seats = self._seats(k + size) if name in TABLES and most != 0 else 0
         self.claims[place] = replace(claim, plural=read is None and least > 1, inward=claim.inward and not seats)
         return size + seats
 
+    def _barred(self, k: int) -> int:
+        """Return how many words at word k say that the thing before them stands elsewhere: "must not be in the bedroom"."""
+        kinds, last = set(), k
+        while said := next((w for w in ("is", "none") if self.length(last, w)), ""):
+            kinds.add(said)
+            last += self.length(last, said)
+        return last - k if len(kinds) > 1 and self.length(last, "in") else 0
+
     def _elsewhere(self, k: int) -> int:
         """Read where the last thing shall not stand: "the washing machine goes in the kitchen, not in the bathroom"."""
         none, last = self.length(k, "none"), self.claims[-1] if self.claims else None
-        joined = self.text(k - 1) in COMMAS - STOPS or self.length(k - 1, "and")
+        joined = self.text(k - 1) in COMMAS - STOPS or self.length(k - 1, "and") or self.words[k - 1].start in self.rooms
         place = self.length(k + none, "in")
         if last is None or not (none and last.inward and joined and place):
             return 0

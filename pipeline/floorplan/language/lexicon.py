@@ -269,3 +269,48 @@ def lexicon(language: Language) -> Lexicon:
 def unread() -> frozenset[str]:
     """Return words of languages that are not read, and that look like none of those that are."""
     return frozenset(split(yaml_text.parse((FOLDER / "others.yaml").read_text(encoding="utf-8"))["others"]))
+
+
+# furniture
+
+
+@functools.lru_cache(maxsize=8192)
+def stem(word: str) -> str:
+    """Return a word without the endings that any of the languages may put to it."""
+    endings = furniture()["endings"]
+    for _ in range(2 if word.isalpha() else 0):
+        word = word.removesuffix(next((e for e in endings if word.endswith(e) and len(word) - len(e) >= 3), ""))
+    return word
+
+
+def stemmed(form: str) -> tuple[str, ...]:
+    """Return the stems of the words of a form; what stands before it tells that it needs an owner."""
+    return tuple(map(stem, words(form.removeprefix("@"))))
+
+
+@functools.cache
+def furniture_phrases() -> Mapping[str, tuple[tuple[tuple[str, ...], str, str, bool, tuple[str, ...]], ...]]:
+    """Return the phrases of wishes for furniture by first stem: (stems, kind, name, whether an owner is needed, words), the longest first."""
+    data = furniture()
+    listed = [("name", name, form) for name, forms in data["names"].items() for some in forms.values() for form in some]
+    listed += [("small", form, form) for form in data["small"]]
+    listed += [("look", name, form) for name, some in data["styles"].items() for form in some]
+    listed += [(kind, str(form), str(form)) for kind, some in data["words"].items() for form in some if form != "-"]
+    listed += [(kind, str(name), form) for kind in ("owner", "fraction") for name, some in data[f"{kind}s"].items() for form in some]
+    table: dict[str, list[tuple[tuple[str, ...], str, str, bool, tuple[str, ...]]]] = {}
+    for kind, name, form in listed:
+        stems = stemmed(form)
+        table.setdefault(stems[0], []).append((stems, kind, name, form.startswith("@"), words(form.removeprefix("@"))))
+    return {k: tuple(sorted(v, key=lambda p: -len(p[0]))) for k, v in table.items()}
+
+
+@functools.cache
+def furniture_stems() -> frozenset[str]:
+    """Return the stems of all words of wishes for furniture."""
+    return frozenset(s for entries in furniture_phrases().values() for entry in entries for s in entry[0])
+
+
+@functools.cache
+def name_stems(name: str, language: str) -> frozenset[str]:
+    """Return the first stems of what a language calls a thing."""
+    return frozenset(stemmed(form)[0] for form in furniture()["names"].get(name, {}).get(language, ()))

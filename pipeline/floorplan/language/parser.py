@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from pydantic import ValidationError
 
-from pipeline.errors import RefusedError, UsageError
+from pipeline.errors import RefusedError
 from pipeline.floorplan.language.builder import Mention, assemble, room_mentions
 from pipeline.floorplan.language.frames import apply_frames, join_brackets
 from pipeline.floorplan.language.furnishing import COMMA, COMMAS, STOPS, Claim, Scan
@@ -18,15 +18,13 @@ from pipeline.floorplan.language.phrases import ban, refuse, sentences, settle, 
 from pipeline.floorplan.language.rooms import Reading, introduce
 from pipeline.floorplan.language.sentences import read
 from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.text import has_minus, split_words
+from pipeline.floorplan.language.text import check_length, has_minus
 from pipeline.floorplan.language.tokens import Token, amounts, on_each_level, read_words, segment
 from pipeline.floorplan.program.completion import complete
 from pipeline.floorplan.program.consistency import ImpossibleError, check
 from pipeline.floorplan.program.floor_program import MAX_PIECES, Evidence, FloorProgram, Furniture, Span, Things
 from pipeline.floorplan.program.furniture import impossible, merge_wishes, natural
 
-LONGEST = 20_000  # characters
-MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
 LONGEST_LIST = 400  # characters of a list of wishes
 FARTHEST = 24  # characters between a wish and the room that follows it
 LARGE = 8  # a number from here on is a size or a count, and missed where nothing took it
@@ -89,16 +87,6 @@ def understand_rooms(plain: str, prompt: str, wishes: Sequence[Claim] = ()) -> F
         where = ".".join(map(str, fault["loc"]))
         raise RefusedError(f"{where} cannot be {str(fault['input'])[:60]}: {fault['msg']}", "ask for a home of usual size") from error
     return program.model_copy(update=_left_out(state, parsed, program.evidence, sorted([*tokens, *people[1:]], key=lambda m: m.first)))
-
-
-def check_length(prompt: str) -> None:
-    """Raise UsageError for a prompt that is empty or too long, in characters or words."""
-    if not prompt.strip():
-        raise UsageError("the prompt is empty", 'say what you want, e.g. "a two-bedroom flat with an open kitchen"')
-    if len(prompt) > LONGEST:
-        raise UsageError(f"the prompt is {len(prompt)} characters long", f"keep it under {LONGEST}")
-    if (count := len(split_words(prompt))) > MOST_WORDS:
-        raise UsageError(f"the prompt has {count} words and tokens", f"keep it under {MOST_WORDS}")
 
 
 def _left_out(state: Reading, parsed: list[list[Token]], evidence: Sequence[Evidence], tokens: Sequence[Token]) -> dict[str, Any]:
@@ -310,12 +298,14 @@ class _Place:
 
     def of(self, claim: Claim) -> tuple[str, ...]:  # noqa: PLR0911 - one answer per rule
         """Return the ids of the rooms that a claim means, () for the whole home."""
+        claim = self._with_what(claim)
         place = bisect.bisect_left(self.stops, claim.start)
         begin, end = self.stops[place - 1] + 1, self.stops[place]
         before = [m for m in self.named if begin <= m.start and m.end <= claim.start]
         after = [m for m in self.named if claim.end <= m.start and m.end <= end]
         gap = self.prompt[claim.end : after[0].start] if after else " " * FARTHEST
-        inward = claim.inward and len(gap) < FARTHEST and COMMA.isdisjoint(gap)
+        barred = before and after and all(impossible(self.kinds[i], claim.name) for i in after[0].ids)  # "a bath with a tub in the bedroom"
+        inward = claim.inward and not barred and len(gap) < FARTHEST and COMMA.isdisjoint(gap)
         if inside := [m for m in self.named if claim.start <= m.start and m.end <= claim.end]:
             return self._and_in(inside, claim)  # "at least half of the living room must stay free"
         if claim.home or (claim.kind == "style" and not after and not before):
@@ -353,6 +343,13 @@ class _Place:
             return room.ids if claim.kind == "count" else self._and_in(before[: before.index(room) + 1][::-1], claim)
         mine = not joined and not barred
         return likely[0] if likely else room.ids if mine else ()  # "two bedrooms, a kitchen and a sofa": the home's
+
+    def _with_what(self, claim: Claim) -> Claim:
+        """Return the wish that follows with a "with" and says where both are: "a table with four chairs in the kitchen"; else the wish itself."""
+        at = self._at(claim.end)
+        lead = 0 if claim.inward or claim.kind != "count" else self.scan.length(at, "with")
+        behind = (c for c in self.claims if lead and c.kind == "count" and c.inward and self._at(c.start) == at + lead)
+        return next((replace(c, name=claim.name, plural=claim.plural) for c in behind), claim)
 
     def _and_in(self, after: Sequence[Mention], claim: Claim) -> tuple[str, ...]:
         """Return the rooms of the first mention and of those that go on from it: "in the bedroom and in the study", "bedroom and study both"; in front of a wish they come last first."""

@@ -11,8 +11,11 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from pipeline import yaml_text
+from pipeline.errors import UsageError
 
 FILE = Path(__file__).resolve().parents[3] / "manifests" / "lexicon" / "characters.yaml"
+LONGEST = 20_000  # characters of a prompt
+MOST_WORDS = 2_500  # and Chinese characters: reading takes time in proportion to them
 HALVES = {"½": 0.5, "1½": 1.5}
 
 
@@ -82,6 +85,16 @@ def split_words(prompt: str) -> tuple[Word, ...]:
             raw = raw[:-1]
         found.append(Word(raw, places[match.start()], places[match.end() - 1] + 1, _number(raw)))
     return tuple(found)
+
+
+def check_length(prompt: str) -> None:
+    """Raise UsageError for a prompt that is empty or too long, in characters or words."""
+    if not prompt.strip():
+        raise UsageError("the prompt is empty", 'say what you want, e.g. "a two-bedroom flat with an open kitchen"')
+    if len(prompt) > LONGEST:
+        raise UsageError(f"the prompt is {len(prompt)} characters long", f"keep it under {LONGEST}")
+    if (count := len(split_words(prompt))) > MOST_WORDS:
+        raise UsageError(f"the prompt has {count} words and tokens", f"keep it under {MOST_WORDS}")
 
 
 def _number(raw: str) -> float | None:

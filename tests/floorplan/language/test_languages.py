@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import parse
-from pipeline.floorplan.language.parser import MOST_WORDS, understand
+from pipeline.floorplan.language.parser import understand
 from pipeline.floorplan.language.spelling import detect
-from pipeline.floorplan.language.text import split_words
+from pipeline.floorplan.language.text import MOST_WORDS, split_words
 from pipeline.floorplan.program.consistency import ImpossibleError
 from tests.floorplan.language.faults import faults, load
 

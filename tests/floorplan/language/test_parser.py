@@ -10,7 +10,8 @@ import yaml
 from pipeline.errors import RefusedError, UsageError
 from pipeline.floorplan import complete, parse
 from pipeline.floorplan.language.lexicon import FOLDER
-from pipeline.floorplan.language.parser import LONGEST, understand
+from pipeline.floorplan.language.parser import understand
+from pipeline.floorplan.language.text import LONGEST
 from pipeline.floorplan.program.floor_program import FloorProgram
 
 CASES = yaml.safe_load(Path("manifests/prompts/benchmark.yaml").read_text(encoding="utf-8"))
