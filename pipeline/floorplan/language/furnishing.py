@@ -307,8 +307,8 @@ class Scan:
             least = 2 if last.endswith(lexicon()["plural"]) and last[0].isascii() and not shown else 1
         self.negated = most == 0
         self._style(at, name_at - at)
-        last, barred = name_at + length, self._barred(name_at + length)
-        size = self._put("count", k, last + barred, name, *((0, 0) if barred else (least, most)))
+        barred = self._barred(name_at + length)
+        size = self._put("count", k, name_at + length + barred, name, *((0, 0) if barred else (least, most)))
         claim, place = self.claims[-1], len(self.claims) - 1
         seats = self._seats(k + size) if name in TABLES and most != 0 else 0
         self.claims[place] = replace(claim, plural=read is None and least > 1, inward=claim.inward and not seats)
