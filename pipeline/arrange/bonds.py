@@ -19,12 +19,12 @@ from pipeline.geometry.compiled import compiled
 from pipeline.relations.frames import REFERENCES, SIDES
 
 REACH, TURN = 0.4, math.radians(30)  # how far from a mode a relation is nearly held [m, rad]
-SURE, ADOPTED = 0.7, 4.0  # who of a relation this strong is astray belongs there all the same, from this far [m]
+SURE, ADOPTED = 0.85, 4.0  # who of a relation this strong is astray belongs there all the same, from this far [m]
 OVER = float(SIDES.index("over"))
 MIDDLE, LOW, _HIGH, SHARE, OUTSIDE = (float(k) for k in range(len(REFERENCES)))
 FLAT = [0, 1, 3]  # x, y, yaw of a pose
 LEVER = 0.5  # metres that a radian counts
-TIGHT = 0.5  # of a mode's spans, this share about their middles is where poses are put
+INSIDE = 0.5  # what is beyond a mode's span is put so far from its middle to its end; who is within stays
 SQUARE = math.radians(15)  # a turn against the anchor is made a quarter turn when it is this near to one,
 FREELY = math.radians(6)  # unless turns in its mode differ by more
 KEPT, TURNED = 0.15, math.radians(15)  # off a mode by no more, a relation is kept [m, rad]
@@ -110,7 +110,7 @@ def _gap(local: Floats, anchor: Item, member: Item) -> float:
 
 @compiled
 def _place(span: Floats, at: float, anchor: float, member: float) -> tuple[float, float]:
-    """Return how far [m] a member at `at` along an axis of its anchor is beyond a span, and the nearest place well within it; both are so long there."""
+    """Return how far [m] a member at `at` along an axis of its anchor is beyond a span, and where it is put; both are so long there."""
     zero, unit = 0.0, 1.0
     if span[0] == SHARE:
         unit = anchor
@@ -120,8 +120,10 @@ def _place(span: Floats, at: float, anchor: float, member: float) -> tuple[float
         zero = (-1.0 if span[0] == LOW else 1.0) * (anchor - member) / 2
     value = (at - zero) / unit
     low, middle, high = span[1], span[2], span[3]
-    within = min(max(value, middle + TIGHT * (low - middle)), middle + TIGHT * (high - middle))
-    return _beyond(value, low, high) * unit, zero + unit * within
+    off = _beyond(value, low, high)
+    if off != 0.0:
+        value = middle + INSIDE * ((low if off < 0.0 else high) - middle)
+    return off * unit, zero + unit * value
 
 
 @compiled
@@ -138,7 +140,7 @@ def _extents(half: Floats, turn: float) -> tuple[float, float]:
 
 @compiled
 def nearest(table: Floats, anchor: Floats, half: Floats, member: Floats, own: Floats) -> Floats:
-    """Return (metres, radians off, x, y, yaw in the anchor's frame, side) of the nearest mode: as `Mode.distances` says, and the pose tightened.
+    """Return (metres, radians off, x, y, yaw in the anchor's frame, side) of the nearest mode: as `Mode.distances` says, and where it is put.
 
     `anchor` and `member` are (x, y, yaw), `half` and `own` their half extents (2,) in plan.
     """

@@ -80,7 +80,8 @@ def _beside(items: Sequence[Item], poses: Floats, i: int, k: int) -> bool:
     dx, dy = poses[k, :2] - poses[i, :2]
     gap = abs(c * dx + s * dy) - float(items[i].half[0] + items[k].half[0])
     line = s * dx - c * dy + float(items[k].half[1] - items[i].half[1])
-    return bool(gap <= NEXT and abs(line) <= IN_LINE and yaw_difference(poses[k, 3], float(poses[i, 3])) < 0.01)
+    tall = max(float(items[m].placement.size[2]) for m in (i, k)) > TALL  # a refrigerator's front stands out
+    return bool(gap <= NEXT and (tall or abs(line) <= IN_LINE) and yaw_difference(poses[k, 3], float(poses[i, 3])) < 0.01)
 
 
 @dataclass(frozen=True, slots=True)
