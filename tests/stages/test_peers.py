@@ -23,6 +23,7 @@ def made(tmp_path_factory):
     root = checkout(tmp_path_factory.mktemp("checkout"), houses=12)
     preprocess.main(root)
     peers.main(root, out=root / "peers", filtered=False)
+    inventory.write(root / inventory.FOLDER / "peers.csv", inventory.scan(Atiss().list(root / "peers", PreprocessSettings())))
     return root
 
 
@@ -47,7 +48,6 @@ def test_split_is_ours(made):
 def test_round_trip_through_the_tables(made, capsys):
     before = {(o["source_id"].split("/")[0], o["category"]): o for o in read(made, OBJECTS)}
     write_params(made, peers="peers", front="data/raw/3d-front")
-    inventory.write(made / inventory.FOLDER / "peers.csv", inventory.scan(Atiss().list(made / "peers", PreprocessSettings())))
     preprocess.main(made)
     assert "12 houses, 12 rooms" in capsys.readouterr().out
     after = {(o["source_id"].split("/")[0], o["category"]): o for o in read(made, OBJECTS)}
