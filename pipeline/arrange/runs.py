@@ -80,8 +80,8 @@ def _beside(items: Sequence[Item], poses: Floats, i: int, k: int) -> bool:
     dx, dy = poses[k, :2] - poses[i, :2]
     gap = abs(c * dx + s * dy) - float(items[i].half[0] + items[k].half[0])
     line = s * dx - c * dy + float(items[k].half[1] - items[i].half[1])
-    tall = max(float(items[m].placement.size[2]) for m in (i, k)) > TALL  # a refrigerator's front stands out
-    return bool(gap <= NEXT and (tall or abs(line) <= IN_LINE) and yaw_difference(poses[k, 3], float(poses[i, 3])) < 0.01)
+    in_line = abs(line) <= IN_LINE or _is_tall(items[i]) or _is_tall(items[k])  # a refrigerator's front stands out
+    return bool(gap <= NEXT and in_line and yaw_difference(poses[k, 3], float(poses[i, 3])) < 0.01)
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,7 @@ class _Kitchen:
         for stretch in (st for st in stretches if st.units):
             order = self._order(stretch)
             first_end, last_end = (min(_play(items[order[k]]), self._room(stretch) / 2) for k in (0, -1))
-            line = max((items[i].depth for i in order if not self._tall(i)), default=-BACK) + BACK
+            line = max((items[i].depth for i in order if not _is_tall(items[i])), default=-BACK) + BACK
             within = _Stretch(edge, stretch.low + first_end, stretch.high - last_end, order)
             self._lay(within, line, self.site.elevation)
             self.runs.append(order)
@@ -149,16 +149,16 @@ class _Kitchen:
             if not own or not base:
                 continue
             bottom = float(np.median([items[i].wished[2] for i in own])) - site.elevation
-            worktops = [i for i in base if not self._tall(i) and items[i].placement.category != SINK]  # a tap is no worktop
+            worktops = [i for i in base if not _is_tall(items[i]) and items[i].placement.category != SINK]  # a tap is no worktop
             top = max((float(items[i].placement.size[2]) for i in worktops), default=0.9)
             highest = site.ceiling - site.elevation - max(float(items[i].placement.size[2]) for i in own) - 0.02
             bottom = min(bottom if abs(bottom - HUNG_AT) < 0.1 else HUNG_AT, highest)
             if bottom < top + LEAST_AIR:
                 continue
             spans = {i: self._span(edge, i) for i in base}
-            low = min((a for i, (a, _) in spans.items() if not self._tall(i)), default=BACK)
-            high = max((b for i, (_, b) in spans.items() if not self._tall(i)), default=edge.length - BACK)
-            cuts = [(opening.start, opening.end) for opening in edge.openings] + [spans[i] for i in base if self._tall(i)]
+            low = min((a for i, (a, _) in spans.items() if not _is_tall(items[i])), default=BACK)
+            high = max((b for i, (_, b) in spans.items() if not _is_tall(items[i])), default=edge.length - BACK)
+            cuts = [(opening.start, opening.end) for opening in edge.openings] + [spans[i] for i in base if _is_tall(items[i])]
             stretches = _between(edge, [(a - SEAM, b + SEAM) for a, b in cuts], low, high, 0.2)
             self._assign(sorted(own, key=lambda i: (-float(items[i].half[0]), i)), stretches)
             for stretch in (st for st in stretches if st.units):
@@ -168,9 +168,6 @@ class _Kitchen:
     def _wished(self, edge: Edge, i: int) -> float:
         """Return where along a wall a unit is drafted [m]."""
         return float(edge.along_of(self.items[i].wished[:2]))
-
-    def _tall(self, i: int) -> bool:
-        return float(self.items[i].placement.size[2]) > TALL
 
     def _span(self, edge: Edge, i: int) -> tuple[float, float]:
         """Return from where to where along its wall a unit stands [m]."""
@@ -207,7 +204,7 @@ class _Kitchen:
         """Return the units in the order of the draft, what is tall at the nearer end, and a unit between sink and cooker."""
         wished = {i: self._wished(stretch.edge, i) for i in stretch.units}
         by_place = sorted(wished, key=lambda i: (round(wished[i], 6), i))
-        base, tall = ([i for i in by_place if self._tall(i) == high] for high in (False, True))
+        base, tall = ([i for i in by_place if _is_tall(self.items[i]) == high] for high in (False, True))
         middle = float(np.mean([wished[i] for i in base])) if base else (stretch.low + stretch.high) / 2
         low = [i for i in tall if wished[i] < middle]
         return [*low, *_part_sink_cooker(base, self.items), *(i for i in tall if i not in low)]
@@ -255,6 +252,10 @@ def _between(
             stretches.append(_Stretch(edge, at, min(first, high), list(units)))
         at = max(at, last)
     return stretches
+
+
+def _is_tall(item: Item) -> bool:
+    return float(item.placement.size[2]) > TALL
 
 
 def _play(item: Item) -> float:

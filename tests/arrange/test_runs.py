@@ -147,6 +147,14 @@ def test_units_without_a_neighbour_are_torn_from_their_run(apart, yaw, lone):
     assert stray_units([[0], [1]], items, poses, np.ones(2, bool)) == []
 
 
+@pytest.mark.parametrize(("name", "ahead", "lone"), [("fridge", 0.2, 0), ("base", 0.2, 2), ("base", 0.1, 0)])
+def test_a_refrigerator_whose_front_stands_out_belongs_to_its_run(name, ahead, lone):
+    items = [make_item(drafted(ASSETS[n], 0.0, 0.0, number=k), ASSETS, LORE, 0.5) for k, n in enumerate((name, "base"))]
+    width, deeper = (ASSETS[name].size[0] + 0.8) / 2, (ASSETS[name].size[1] - 0.58) / 2
+    poses = np.array([[1.0, 2.7 + deeper - ahead, 0.0, 0.0], [1.002 + width, 2.7, 0.0, 0.0]])
+    assert len(stray_units([[0, 1]], items, poses, np.ones(2, bool))) == lone
+
+
 def test_a_gap_at_the_nearer_end_of_the_wall_is_closed():
     wide = one_room(np.array([[0.0, 0.0], [3.5, 0.0], [3.5, 3.0], [0.0, 3.0]]))
     for shift in (0.1, 0.4):

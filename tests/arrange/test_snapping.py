@@ -59,6 +59,16 @@ def test_a_rare_mode_binds_nobody():
     assert bond.local[1] == pytest.approx(-0.55, abs=0.1)  # at the desk, though it was drafted where few stand
 
 
+@pytest.mark.parametrize(("gap", "put"), [(0.36, 0.36), (0.59, 0.59), (0.2, 0.4), (0.9, 0.525)])
+def test_who_stands_within_a_mode_stays_and_who_does_not_is_put_well_within_it(gap, put):
+    """Coffee tables stand .35 to .6 m before a sofa, most of them .45 m."""
+    items = [make_item(p, ASSETS, LORE, 0.5) for p in (drafted(ASSETS["sofa"], 2.0, 3.5), drafted(ASSETS["low_table"], 2.0, 0.0, number=1))]
+    wished = np.array([2.0, 3.5 - 0.45 - gap - 0.25, 0.0, 0.0])
+    bond = find_bond(1, items, wished, np.array([items[0].wished, wished]), LORE)
+    assert bond is not None
+    assert bond.local == pytest.approx([0.0, -(0.45 + put + 0.25), 0.0], abs=1e-6)
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), st.floats(-3.1, 3.1), st.sampled_from(sorted(RELATIONS.pairs)))
 def test_the_compiled_search_finds_the_nearest_mode_and_a_pose_that_is_in_it(x, y, yaw, names):

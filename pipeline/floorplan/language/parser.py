@@ -298,14 +298,15 @@ class _Place:
 
     def of(self, claim: Claim) -> tuple[str, ...]:  # noqa: PLR0911 - one answer per rule
         """Return the ids of the rooms that a claim means, () for the whole home."""
-        claim = self._with_what(claim)
+        claim = self._placed_with(claim)
         place = bisect.bisect_left(self.stops, claim.start)
         begin, end = self.stops[place - 1] + 1, self.stops[place]
         before = [m for m in self.named if begin <= m.start and m.end <= claim.start]
         after = [m for m in self.named if claim.end <= m.start and m.end <= end]
         gap = self.prompt[claim.end : after[0].start] if after else " " * FARTHEST
-        barred = before and after and all(impossible(self.kinds[i], claim.name) for i in after[0].ids)  # "a bath with a tub in the bedroom"
-        inward = claim.inward and not barred and len(gap) < FARTHEST and COMMA.isdisjoint(gap)
+        # "a bath with a tub in the bedroom"
+        nowhere = before and after and all(impossible(self.kinds[i], claim.name) for i in after[0].ids)
+        inward = claim.inward and not nowhere and len(gap) < FARTHEST and COMMA.isdisjoint(gap)
         if inside := [m for m in self.named if claim.start <= m.start and m.end <= claim.end]:
             return self._and_in(inside, claim)  # "at least half of the living room must stay free"
         if claim.home or (claim.kind == "style" and not after and not before):
@@ -344,12 +345,12 @@ class _Place:
         mine = not joined and not barred
         return likely[0] if likely else room.ids if mine else ()  # "two bedrooms, a kitchen and a sofa": the home's
 
-    def _with_what(self, claim: Claim) -> Claim:
-        """Return the wish that follows with a "with" and says where both are: "a table with four chairs in the kitchen"; else the wish itself."""
+    def _placed_with(self, claim: Claim) -> Claim:
+        """Return the wish as far as what follows it with a "with" and says where both are: "a table with four chairs in the kitchen"."""
         at = self._at(claim.end)
         lead = 0 if claim.inward or claim.kind != "count" else self.scan.length(at, "with")
         behind = (c for c in self.claims if lead and c.kind == "count" and c.inward and self._at(c.start) == at + lead)
-        return next((replace(c, name=claim.name, plural=claim.plural) for c in behind), claim)
+        return next((replace(claim, end=c.end, inward=True) for c in behind), claim)
 
     def _and_in(self, after: Sequence[Mention], claim: Claim) -> tuple[str, ...]:
         """Return the rooms of the first mention and of those that go on from it: "in the bedroom and in the study", "bedroom and study both"; in front of a wish they come last first."""

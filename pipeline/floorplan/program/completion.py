@@ -151,9 +151,8 @@ def _storeys(program: FloorProgram) -> tuple[RoomReq, ...]:
         top = program.storeys - 1
         near = [r for k in stated if room.id in k.ends for r in program.rooms if r.id in k.ends and r.id != room.id]
         beside = {r.level for r in near if r.level is not None}
-        if not beside and (
-            room.type not in UPSTAIRS or all(r.type != "hallway" for r in near)
-        ):  # a closet lies by its bedroom, a bath by its entry
+        landing = room.type in UPSTAIRS and any(r.type == "hallway" for r in near)
+        if not beside and not landing:  # a closet lies by the largest bedroom, a bath by the entry
             beside = {int(r.type in UPSTAIRS) for r in near}
         usual = beside.pop() if len(beside) == 1 and room.type in BESIDE else (1 if room.type in UPSTAIRS else 0)
         level = room.level if room.level is not None else usual

@@ -264,3 +264,65 @@ def test_long_prompts_are_read_quickly():
     attach(program, claims, prompt, [Mention(2, 9, ("bed",))])
     assert time.process_time() - start < 10.0
     assert len(plain) == len(prompt)
+
+
+def things(prompt):
+    """Return the wishes of each type of room, and what nothing was made of."""
+    program = parse(prompt)
+    return {(r.type, c.category, c.min, c.max) for r in program.rooms for c in r.furniture.counts}, program.unparsed
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "The washing machine must not be in the kitchen. A bathroom and two bedrooms.",
+        "Die Waschmaschine soll nicht in der Küche stehen. Ein Bad und zwei Schlafzimmer.",
+        "La lavadora no debe estar en la cocina. Un baño y dos dormitorios.",
+        "Le lave-linge ne doit pas être dans la cuisine. Une salle de bain et deux chambres.",
+    ],
+)
+def test_what_must_not_be_in_a_room_is_not_asked_for_there(prompt):
+    assert things(prompt) == ({("kitchen", "washing_machine", 0, 0)}, ())
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "The washing machine should be in the bathroom not in the kitchen. Two bedrooms.",
+        "Die Waschmaschine soll ins Bad, nicht in die Küche. Zwei Schlafzimmer.",
+        "La lavadora debe estar en el baño y no en la cocina. Dos dormitorios.",
+    ],
+)
+def test_a_thing_stands_in_one_room_and_not_in_the_other(prompt):
+    assert things(prompt) == ({("bathroom", "washing_machine", 1, None), ("kitchen", "washing_machine", 0, 0)}, ())
+
+
+def test_a_table_stands_where_its_chairs_do():
+    wishes, _ = things("A kitchen with an oven, and a dining table with 4 chairs in the living room.")
+    assert wishes == {("kitchen", "oven", 1, None), ("living_room", "dining_table", 1, None), ("living_room", "any_chair", 4, 4)}
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "A terrace, a bath, put the desk in the bedroom.",
+        "A terrace off the living room, 1 bath, a desk should be in the bedroom.",
+    ],
+)
+def test_where_a_thing_stands_joins_no_rooms(prompt):
+    program = parse(prompt)
+    kinds = {r.id: r.type for r in program.rooms}
+    assert all("bedroom" not in (kinds[k.a], kinds[k.b]) for k in program.links if k.stated)
+    assert ("bedroom", "desk", 1, None) in things(prompt)[0]
+
+
+def test_a_tub_stands_in_the_bathroom_of_the_bedroom():
+    program = parse("A bath with a tub in the master bedroom.")
+    assert things("A bath with a tub in the master bedroom.")[0] == {("bathroom", "bathtub", 1, None)}
+    assert [{k.a, k.b} for k in program.links if k.stated] == [{"bath", "bed"}]
+
+
+def test_how_many_live_there_is_no_empty_word():
+    """Words that say nothing once held "somos cuatro" and "mother in law"."""
+    assert sum(r.type == "bedroom" for r in parse("Somos cuatro, una casa con cocina.").rooms) == 3
+    assert [r.role for r in parse("A room for my mother in law, a kitchen.").rooms if r.stated and r.type == "bedroom"] == ["elder"]
